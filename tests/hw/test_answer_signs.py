@@ -47,7 +47,7 @@ def looked(
 @pytest.mark.parametrize("room", ROOMS, ids=lambda room: room.source)
 @pytest.mark.parametrize("fewer", [False, True])
 @pytest.mark.parametrize("seed", range(3))
-def test_each_letter_is_read_at_its_seat_beside_others_who_ask(
+def test_a_held_up_letter_is_read_at_its_seat_while_neighbours_ask_for_help(
     room: Room, fewer: bool, seed: int
 ) -> None:
     count = min(4, room.places) if fewer else room.places
@@ -73,7 +73,7 @@ def test_a_letter_counts_from_three_pictures_on_and_is_gone_when_it_is_down() ->
     assert "".join("-c"[2 in one] for one in found) == "--ccccc--"
 
 
-def test_a_sign_that_changes_its_letter_is_not_sure_meanwhile() -> None:
+def test_confidence_drops_while_a_sign_changes_its_letter() -> None:
     _, camera, watcher = watched(4)
     looked(camera, watcher, (), {"user2": "c"})
     _, letters = looked(camera, watcher, (), {"user2": "d"}, 2)
@@ -82,7 +82,7 @@ def test_a_sign_that_changes_its_letter_is_not_sure_meanwhile() -> None:
     assert letters[2][0] == "d" and letters[2][1] >= 0.7
 
 
-def test_what_is_no_sign_is_none() -> None:
+def test_strips_circles_and_radiators_are_not_read_as_signs() -> None:
     image = np.full((240, 320), 30, np.uint8)
     cv2.rectangle(image, (60, 120), (90, 126), 220, -1)  # one strip: the edge of something
     cv2.circle(image, (160, 120), 9, 220, -1)

@@ -9,7 +9,7 @@ from tangy_hw.rate_estimator import FIRST, WINDOW, RateEstimator
 
 @pytest.mark.parametrize("hertz", [1, 2.5, 10, 40])
 @pytest.mark.parametrize("seconds", [1.5, 2.0, 7.3])
-def test_it_is_told_by_what_came_of_late(hertz: float, seconds: float) -> None:
+def test_the_rate_is_estimated_from_recent_arrivals(hertz: float, seconds: float) -> None:
     arrivals = RateEstimator()
     for number in range(round(seconds * hertz) + 1):
         arrivals.count(50 + number / hertz)
@@ -17,7 +17,7 @@ def test_it_is_told_by_what_came_of_late(hertz: float, seconds: float) -> None:
     assert arrivals.rate(now) == pytest.approx(hertz, rel=0.35 if hertz < 2 else 0.1)
 
 
-def test_nothing_is_told_of_what_has_not_come_for_long_enough() -> None:
+def test_no_rate_is_given_before_the_first_full_interval() -> None:
     arrivals = RateEstimator()
     assert arrivals.rate(100) is None
     arrivals.count(100)
@@ -26,7 +26,7 @@ def test_nothing_is_told_of_what_has_not_come_for_long_enough() -> None:
     assert arrivals.rate(100 + FIRST) is not None
 
 
-def test_what_comes_no_more_has_no_rate_left_and_what_comes_again_has_its_own() -> None:
+def test_the_rate_falls_to_zero_in_silence_and_starts_fresh_when_data_returns() -> None:
     arrivals = RateEstimator()
     for number in range(31):
         arrivals.count(number / 10)
@@ -39,7 +39,7 @@ def test_what_comes_no_more_has_no_rate_left_and_what_comes_again_has_its_own() 
     assert arrivals.rate(12) is None
 
 
-def test_several_that_come_at_once_are_all_counted() -> None:
+def test_arrivals_in_one_batch_are_all_counted() -> None:
     arrivals = RateEstimator()
     for number in range(21):
         arrivals.count(number / 5, 4)

@@ -40,7 +40,7 @@ def described(folder: Path, body: str) -> Robot:
 
 
 class TestFile:
-    def test_what_is_left_out_is_as_it_always_was(self) -> None:
+    def test_a_file_without_a_body_gets_the_default_body(self) -> None:
         assert load_robot().body == BodyProfile()
         assert MotionLimits.of(load_robot()) == MotionLimits(max_speed=load_robot().speed)
         assert laser_of(load_robot()) == Pose(0.0, 0.0, 0.0)
@@ -68,7 +68,7 @@ class TestFile:
             ("cameras.eye = { x = 0 }", "body.cameras.eye"),
         ],
     )
-    def test_what_is_wrong_is_refused_by_its_name(
+    def test_an_invalid_body_is_refused_with_the_name_of_its_key(
         self, tmp_path: Path, body: str, names: str
     ) -> None:
         with pytest.raises(ProfileError) as error:
@@ -90,12 +90,12 @@ class TestGuard:
         expected = [0.6, 0.2, hypot(0.3, 0.4), -0.3]
         assert outside(points, np.array(CORNERS)) == pytest.approx(expected)
 
-    def test_it_stops_as_far_before_somebody_as_it_is_long(self) -> None:
+    def test_a_longer_body_stops_further_from_a_person(self) -> None:
         round_, large = (limit_near_people(Twist(0.4, 0.0), person(0.78, 0.0), one).forward
                          for one in (MotionLimits(), LARGE))  # fmt: skip
         assert round_ > 0.0 and large == 0.0
 
-    def test_its_corners_turn_into_nobody(self) -> None:
+    def test_a_turn_keeps_the_corners_of_the_body_off_people(self) -> None:
         assert limit_near_people(Twist(0.0, 0.8), person(0.35, 0.65), LARGE) == STILL
         assert limit_near_people(Twist(0.0, 0.8), person(1.5, 0.0), LARGE) == Twist(0.0, 0.8)
 

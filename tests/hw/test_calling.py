@@ -29,28 +29,28 @@ def program(code: str) -> Contact:
 
 
 class TestCommand:
-    def test_one_that_prints_an_answer_has_reached_somebody(self) -> None:
+    def test_a_command_that_prints_an_answer_has_reached_the_person(self) -> None:
         assert news(program("print('calling'); print('answered: Anna comes')")) == [
             CallNews("answered", "Anna comes")
         ]
 
-    def test_one_that_ends_well_has_sent_the_message_and_reached_nobody_yet(self) -> None:
+    def test_a_command_that_exits_cleanly_has_only_sent_the_message(self) -> None:
         assert news(program("print('sent')")) == [CallNews("sent")]
 
-    def test_it_is_handed_the_message(self) -> None:
+    def test_the_command_receives_the_message(self) -> None:
         code = "import sys, json; print('answered', json.loads(sys.stdin.readline())['text'])"
         assert news(program(code)) == [CallNews("answered", "It stands still.")]
 
-    def test_one_that_fails_is_told_with_why(self) -> None:
+    def test_a_failing_command_is_reported_with_its_status_and_output(self) -> None:
         (told,) = news(program("raise SystemExit('no line to the outside')"))
         assert told.stage == "failed"
         assert "status 1" in told.said and "no line to the outside" in told.said
 
-    def test_one_that_is_not_there_is_told(self) -> None:
+    def test_a_missing_command_is_reported_as_failed(self) -> None:
         (told,) = news(Contact("Anna", command=("/no/such/program",)))
         assert told.stage == "failed" and "/no/such/program" in told.said
 
-    def test_one_that_never_ends_is_ended(self) -> None:
+    def test_a_hanging_command_is_killed_after_the_timeout(self) -> None:
         (told,) = news(program("import time; time.sleep(60)"), 0.3)
         assert told.stage == "failed"
 
@@ -100,7 +100,7 @@ def test_an_address_gets_the_message_and_only_an_answer_counts(
         assert json.loads(posted[0]) == MESSAGE
 
 
-def test_an_address_that_refuses_or_is_not_there_is_told() -> None:
+def test_an_unreachable_or_refusing_address_is_reported_as_failed() -> None:
     with address(b"answered", 503) as (url, _):
         (told,) = news(Contact("Anna", url=url))
         assert told.stage == "failed" and "503" in told.said

@@ -34,7 +34,7 @@ def published(message: Mapping[str, Any], topic: str = TOPIC) -> str:
 
 class TestPictures:
     @pytest.mark.parametrize("scheme", ["ros", "ros2"])
-    async def test_the_newest_picture_of_a_topic_is_given(self, scheme: str) -> None:
+    async def test_the_camera_returns_the_newest_picture_of_its_topic(self, scheme: str) -> None:
         server = RosbridgeServer()
         await server.start()
         grabber = make_grabber(find_camera(f"{scheme}://{server.host}:{server.port}{TOPIC}"))
@@ -50,7 +50,7 @@ class TestPictures:
             await asyncio.to_thread(grabber.read)
         grabber.close()
 
-    def test_where_nobody_answers_it_has_gone(self) -> None:
+    def test_a_camera_without_a_server_raises_no_frame(self) -> None:
         grabber = RosPictures(find_camera(f"ros://127.0.0.1:1{TOPIC}"))
         with pytest.raises(NoFrame):
             grabber.open()
@@ -75,7 +75,7 @@ class TestPictures:
             b"\xff\x00",
         ],
     )
-    def test_what_is_no_picture_of_it_is_passed_over(self, text: str | bytes) -> None:
+    def test_messages_that_hold_no_picture_are_ignored(self, text: str | bytes) -> None:
         assert decoded(text, TOPIC) is None
 
     @pytest.mark.parametrize("name", ["ros://robot:9090", "ros2://robot:9090/", "ros:///topic"])

@@ -33,11 +33,11 @@ class TestNames:
         assert find_camera(str(tmp_path / "video.avi")).kind == "file"
         assert not find_camera(str(tmp_path)).live
 
-    def test_a_file_in_memory_is_no_device_although_it_stands_under_dev(self) -> None:
+    def test_a_path_under_dev_shm_is_a_file_and_no_device(self) -> None:
         with pytest.raises(CameraError, match="there is no such file"):
             find_camera("/dev/shm/nowhere/video.avi")  # noqa: S108 - it is not there
 
-    def test_a_password_is_not_shown(self) -> None:
+    def test_the_name_of_a_camera_leaves_out_its_password(self) -> None:
         source = find_camera("rtsp://staff:secret@10.0.0.7/1")
         assert source.name == "rtsp://10.0.0.7/1"
         assert "secret" in source.target
@@ -55,7 +55,7 @@ class TestNames:
             ("ftp://u:secret@host", "^ftp://host: is no address"),
         ],
     )
-    def test_what_cannot_be_a_camera_is_refused_in_a_sentence(self, name: str, word: str) -> None:
+    def test_an_invalid_camera_name_is_refused_in_one_sentence(self, name: str, word: str) -> None:
         with pytest.raises(CameraError, match=word) as refused:
             find_camera(name)
         assert "\n" not in str(refused.value)
@@ -67,12 +67,12 @@ class TestNames:
         with pytest.raises(CameraError, match="neither a file nor a folder"):
             find_camera(str(tmp_path / "pipe"))
 
-    def test_it_can_be_told_to_another_process(self) -> None:
+    def test_a_source_can_be_encoded_for_another_process(self) -> None:
         source = find_camera("http://host/")
         assert decode(CameraSource, encode(source)) == source
 
 
-def test_pictures_come_in_the_order_that_people_count_in(tmp_path: Path) -> None:
+def test_pictures_are_sorted_in_natural_number_order(tmp_path: Path) -> None:
     for name in ("10.png", "9.png", "b2.jpg", "b10.JPG", "notes.txt", "a.png"):
         (tmp_path / name).write_bytes(b"")
     (tmp_path / "folder.png").mkdir()

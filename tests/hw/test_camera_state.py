@@ -49,7 +49,7 @@ class Film:
 
 class TestStates:
     @pytest.mark.parametrize("state", ILL)
-    def test_what_pictures_show_is_named_in_time_and_so_is_its_end(self, state: State) -> None:
+    def test_a_bad_state_begins_and_ends_within_the_time_limit(self, state: State) -> None:
         film = Film()
         film.show(FINE, 3)
         film.show(ILL[state], 3)
@@ -74,7 +74,7 @@ class TestStates:
         assert film.names == ["OPENING", "OK", "COVERED"]
         assert film.watch.at(film.now).unchanged > 1
 
-    def test_no_pictures_at_all_is_disconnected_and_says_why(self) -> None:
+    def test_a_camera_without_pictures_is_disconnected_with_a_reason(self) -> None:
         film = Film()
         film.show(FINE, 3)
         film.watch.lost("it is unplugged")
@@ -87,9 +87,7 @@ class TestStates:
         assert not film.watch.at(film.now).why
 
     @pytest.mark.parametrize("why", ["", "it is unplugged"])
-    def test_one_that_comes_back_with_the_picture_it_left_with_is_not_frozen(
-        self, why: str
-    ) -> None:
+    def test_a_camera_that_returns_with_its_last_picture_is_not_frozen(self, why: str) -> None:
         film = Film()
         film.show(FINE, 3)
         if why:
@@ -106,7 +104,7 @@ class TestStates:
         assert film.names == ["OPENING", "DISCONNECTED"]
         assert film.states[1][0] <= NAMED
 
-    def test_what_lasts_for_a_moment_is_no_state(self) -> None:
+    def test_a_momentary_disturbance_changes_no_state(self) -> None:
         film = Film()
         for look in ILL.values():
             film.show(FINE, 1)
@@ -125,14 +123,14 @@ class TestStates:
         film.show(FINE, 1)
         assert len(film.names) <= 4
 
-    def test_what_is_over_is_over(self) -> None:
+    def test_an_ended_camera_stays_ended(self) -> None:
         film = Film()
         film.show(FINE, 1)
         film.watch.ended("That was the last picture.")
         film.show(None, 9)
         assert film.names == ["OPENING", "OK", "ENDED"]
 
-    def test_a_picture_that_is_taken_when_wanted_is_judged_by_itself(self) -> None:
+    def test_a_picture_taken_on_demand_is_judged_alone(self) -> None:
         watch = CameraWatch(0.0, each=True)
         for stamp in (1.0, 60.0, 120.0):
             watch.saw(FINE._replace(stamp=stamp))
@@ -159,7 +157,7 @@ class TestReadings:
         assert set(reading.facts) == set(measures)
         assert not any(measures[fact].wrong(value) for fact, value in reading.facts.items())
 
-    def test_pictures_are_counted_by_their_numbers_and_those_of_a_folder_are_not(self) -> None:
+    def test_the_rate_counts_sequence_numbers_but_not_in_folders(self) -> None:
         watch, folder = CameraWatch(0.0), CameraWatch(0.0, each=True)
         for number in range(16):  # every third is looked at, of 15 in a second
             for one in (watch, folder):
@@ -169,7 +167,7 @@ class TestReadings:
         assert watch.at(9.0).rate == 0
 
     @pytest.mark.parametrize("state", ILL)
-    def test_what_shows_in_its_facts_is_a_warning(self, state: State) -> None:
+    def test_a_bad_camera_state_reads_as_a_warning(self, state: State) -> None:
         film = Film()
         film.show(ILL[state], 2)
         assert film.watch.at(film.now).reading("camera").state == WARN
@@ -189,12 +187,12 @@ class TestReadings:
             film.watch.saw(FINE._replace(stamp=float(second), fingerprint=10))
         assert film.watch.at(3699.0).reading("camera").facts["unchanged"] == 3600
 
-    def test_before_the_first_picture_nothing_is_measured(self) -> None:
+    def test_a_reading_before_the_first_picture_has_no_facts(self) -> None:
         assert CameraWatch(0.0).at(0.7).reading("eye") == Reading("eye", 0.7, STALE)
 
 
 class TestMeasures:
-    def test_blur_shows_whatever_else_is_wrong_with_a_picture(self) -> None:
+    def test_blur_is_measured_in_dim_and_noisy_pictures_too(self) -> None:
         rng = np.random.default_rng(3)
         for seed in range(40, 44):
             image = room(seed, 640, 360)
@@ -210,7 +208,7 @@ class TestMeasures:
         assert (look.seq, look.contrast, look.sharpness) == (5, 0.0, None)
         assert look.brightness == pytest.approx(1.0)
 
-    def test_the_very_same_picture_is_known_by_its_fingerprint(self) -> None:
+    def test_only_identical_pictures_share_a_fingerprint(self) -> None:
         image = room(1, 64, 48)
         again = image.copy()
         assert measure(image, 0, 0.0).fingerprint == measure(again, 1, 1.0).fingerprint

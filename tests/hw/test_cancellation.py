@@ -1,4 +1,4 @@
-"""What is being opened can be called off until it is open, and leaves nothing behind."""
+"""An opening can be cancelled until it completes, and leaves nothing behind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from tangy_hw.cancellation import Cancellation, Cancelled
 
 
-def test_what_was_started_is_ended_the_newest_first_and_once() -> None:
+def test_cancel_ends_each_started_part_once_and_newest_first() -> None:
     opening, ended = Cancellation(), list[str]()
     opening.register(lambda: ended.append("bench"))
     opening.register(lambda: ended.append("robot"))
@@ -21,14 +21,14 @@ def test_what_was_started_is_ended_the_newest_first_and_once() -> None:
         opening.check()
 
 
-def test_what_was_just_being_started_is_ended_as_well() -> None:
+def test_a_part_registered_after_cancel_is_ended_at_once() -> None:
     opening, ended = Cancellation(), list[str]()
     opening.cancel()
     opening.register(lambda: ended.append("late"))
     assert ended == ["late"]
 
 
-def test_what_is_open_is_not_called_off_any_more() -> None:
+def test_cancel_after_completion_does_nothing() -> None:
     opening, ended = Cancellation(), list[str]()
     opening.register(lambda: ended.append("robot"))
     opening.complete()
@@ -38,14 +38,14 @@ def test_what_is_open_is_not_called_off_any_more() -> None:
     assert (ended, opening.cancelled) == ([], False)
 
 
-def test_what_was_called_off_does_not_become_open() -> None:
+def test_a_cancelled_opening_cannot_complete() -> None:
     opening = Cancellation()
     opening.cancel()
     with pytest.raises(Cancelled):
         opening.complete()
 
 
-def test_an_end_may_look_whether_it_was_called_off() -> None:
+def test_an_end_handler_runs_without_the_lock() -> None:
     """It is called without the lock, so that whoever ends can go on from there."""
     opening, seen = Cancellation(), list[bool]()
 

@@ -1,4 +1,4 @@
-"""What a card's other cells say of one: hands are large, chips alike, and numbers a deck's own."""
+"""Context from a card's other cells: hands are large, chips alike, numbers from the deck."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def around(parts: NDArray[Any], looks: NDArray[Any] | None = None) -> dict[str, 
     return {name: rows[:, place] for place, name in enumerate(NAMES)}
 
 
-def test_cells_hear_of_a_hand_beside_them() -> None:
+def test_the_context_of_a_cell_includes_a_hand_beside_it() -> None:
     parts = np.array([BARE] * 25)
     parts[12] = HAND
     told = around(parts)
@@ -48,7 +48,7 @@ def test_a_cell_is_compared_with_chips_and_paper_of_its_card() -> None:
     assert np.isclose(told["marks"][0], 4 / 24, atol=0.01)
 
 
-def test_a_finger_goes_on_and_a_chip_ends_all_around() -> None:
+def test_a_finger_reaches_beyond_its_cell_and_a_chip_does_not() -> None:
     v, u = np.mgrid[0:80, 0:80]
     tones = np.zeros((80, 80, 3), np.float32)
     tones[..., 0] = 1.0  # paper
@@ -63,7 +63,7 @@ def test_a_finger_goes_on_and_a_chip_ends_all_around() -> None:
     assert told["same longest"].tolist() == [0.0, 1.0]
 
 
-def test_cells_of_any_grid_are_told_what_is_at_its_rim() -> None:
+def test_the_context_marks_the_cells_at_the_rim_of_any_grid() -> None:
     rows = context_of(
         np.full((2, 12, 3), 1 / 3), np.zeros((2, 12, len(LOOKS))), np.zeros((2, 12)), 4
     )
@@ -72,7 +72,7 @@ def test_cells_of_any_grid_are_told_what_is_at_its_rim() -> None:
 
 
 @pytest.mark.slow
-def test_a_cell_is_the_same_whichever_way_it_is_turned() -> None:
+def test_the_features_of_a_cell_do_not_depend_on_its_rotation() -> None:
     features = len(FEATURES) + len(SEEN) * SPOTS**2
     ways = {tuple(turned(turn)) for turn in range(TURNS)}
     assert len(ways) == TURNS

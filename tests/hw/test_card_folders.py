@@ -1,4 +1,4 @@
-"""Folders of pictures of cards: read whole, and counted only where what is beside them is sound."""
+"""Folders of pictures of cards: read whole, and counted only if their label files are sound."""
 
 from __future__ import annotations
 
@@ -35,9 +35,7 @@ def test_a_folder_without_pictures_is_refused_and_the_rest_is_read(
     assert [row["card"] for row in json.loads(done.stdout)] == [7]
 
 
-def test_what_stands_beside_a_picture_is_never_left_out_for_being_damaged(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_a_damaged_label_file_stops_the_count(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 1, "--png", tmp_path, "--dpi", 60)
     told = {"file": "card-007.png", "label": {"card": 7, "marked": []}}
     (tmp_path / "card-007.json").write_text(json.dumps(told))

@@ -48,13 +48,13 @@ def doubted(
 
 @pytest.mark.parametrize("chip", [RED, BLUE, BROWN])
 @pytest.mark.parametrize("odd", [SHADOW, WHITE])
-def test_a_mark_without_colour_among_coloured_ones_is_doubted(chip: Cell, odd: Cell) -> None:
+def test_a_colourless_mark_among_coloured_marks_is_hidden(chip: Cell, odd: Cell) -> None:
     assert doubted({2: chip, 9: chip, 17: chip, 21: odd}) == {21}
     assert doubted({2: chip, 9: chip}) == set()
 
 
 @pytest.mark.parametrize("mark", [WHITE, CROSSED])
-def test_where_no_mark_has_a_colour_none_is_doubted(mark: Cell) -> None:
+def test_marks_without_any_colour_are_all_kept(mark: Cell) -> None:
     cells = {2: mark, 9: mark, 17: mark}
     assert doubted(cells) == set()
     assert doubted({**cells, 21: RED}) == set()  # one chip of another kind changes nothing
@@ -64,7 +64,7 @@ def test_chips_of_several_colours_are_as_good_as_of_one() -> None:
     assert doubted({2: RED, 9: BLUE, 17: BROWN, 20: RED, 3: BLUE}) == set()
 
 
-def test_bare_numbers_of_which_many_cannot_be_told_are_no_marks() -> None:
+def test_dark_numbers_among_many_unsure_cells_are_hidden() -> None:
     muddle = dict.fromkeys(range(10, 10 + MUDDLED), UNSURE)
     assert doubted({2: SHADOW, 4: SHADOW}, muddle) == {2, 4}
     assert doubted({2: SHADOW, 4: SHADOW, 5: RED}, muddle) == {2, 4}
@@ -74,11 +74,11 @@ def test_bare_numbers_of_which_many_cannot_be_told_are_no_marks() -> None:
 
 
 @pytest.mark.parametrize("chip", [RED, BLUE, BROWN])
-def test_a_fingertip_among_chips_of_any_colour_is_doubted(chip: Cell) -> None:
+def test_a_fingertip_among_chips_of_any_colour_is_hidden(chip: Cell) -> None:
     assert doubted({2: chip, 9: chip, 17: FINGER}) == {17}
 
 
-def test_the_only_mark_is_doubted_where_it_looks_like_the_end_of_a_hand() -> None:
+def test_a_single_mark_that_looks_like_a_fingertip_is_hidden() -> None:
     hand = {18: HIDDEN, 23: HIDDEN}
     assert doubted({17: FINGER}, hand) == {17}
     assert doubted({17: FINGER}) == set()
@@ -97,7 +97,7 @@ def test_the_only_mark_is_doubted_where_it_looks_like_the_end_of_a_hand() -> Non
         ("fingertips, glaring", 22),
     ],
 )
-def test_stripes_blur_and_fingers_are_told_no_marks(
+def test_stripes_blur_and_fingers_are_not_read_as_marks(
     activity: Activity, trouble: str, number: int
 ) -> None:
     """Each of these frames had bare cells that were told marked."""
@@ -111,7 +111,7 @@ def test_stripes_blur_and_fingers_are_told_no_marks(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("marks", ["coloured", "colourless", "pen"])
-def test_marks_of_one_kind_are_read_whatever_they_are(activity: Activity, marks: str) -> None:
+def test_marks_of_one_uniform_kind_are_read(activity: Activity, marks: str) -> None:
     harsh = HarshCamera(CardCamera(activity.deck, title=activity.title), CHOSEN, marks)
     reader, read, there = CardReader(activity.deck), 0, 0
     for frame in harsh.frames(TROUBLES[0], 3):

@@ -1,4 +1,4 @@
-"""What accuses a person, or says that they have won, is seen in pictures of two moments."""
+"""A wrong mark or a win is reported only if pictures of two moments show it."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ ACCUSING: list[tuple[str, int, Sequence[int]]] = [
 
 
 @pytest.mark.parametrize(("state", "marked", "called"), ACCUSING)
-def test_what_accuses_or_wins_is_told_when_two_moments_show_it(
+def test_a_wrong_or_winning_state_needs_pictures_of_two_moments(
     state: str, marked: int, called: Sequence[int]
 ) -> None:
     once = looked([reading(marked)], called)
@@ -83,21 +83,21 @@ def test_one_misread_picture_among_right_ones_says_nothing(
         assert looked(shown, called).state != state
 
 
-def test_that_all_is_well_needs_no_second_picture() -> None:
+def test_a_correct_card_needs_one_picture() -> None:
     look = looked([reading(1 << 7)], [NUMBERS[7]])
     assert look.state == "correctly marked" and look.is_over and not look.sure
     look = looked([reading(1 << 7)] * 2, [NUMBERS[7]], identify=True)
     assert look.is_over and look.sure and look.pictures == 2
 
 
-def test_what_one_picture_hides_others_bear_out() -> None:
+def test_pictures_with_different_hidden_cells_complete_each_other() -> None:
     """A line is seen twice though no picture shows all of it."""
     shown = [reading(ROW, hidden=1), reading(ROW, hidden=2), reading(ROW, hidden=4)]
     assert looked(shown[:2], NUMBERS[:5]).state == "occluded"
     assert looked(shown, NUMBERS[:5]).state == "bingo"
 
 
-def test_another_card_in_one_of_the_pictures_ends_the_look() -> None:
+def test_a_second_card_in_any_picture_ends_the_look() -> None:
     look = looked([reading(1 << 7), reading(1 << 7, card=31)])
     assert look.is_over and look.state == "occluded"
     assert look.reading.card is None and look.reading.cards == (CARD, 31)
@@ -105,7 +105,7 @@ def test_another_card_in_one_of_the_pictures_ends_the_look() -> None:
     assert look.is_over and look.reading.problem == "two copies of card 17 in sight"
 
 
-def test_moments_are_apart_and_a_picture_that_comes_again_is_none() -> None:
+def test_a_repeated_or_too_early_picture_is_no_new_moment() -> None:
     look = looked([])
     assert look.is_another(b"a", 5.0)
     assert not look.is_another(b"b", 5.0 + MOMENT / 2)
@@ -160,7 +160,7 @@ async def seen_in(
 
 
 @pytest.mark.slow
-async def test_a_wrong_mark_is_told_by_two_pictures_and_no_more_are_taken(
+async def test_a_look_stops_after_two_pictures_show_a_wrong_mark(
     activity: Activity,
 ) -> None:
     shown = [picture(1 << 7, noise) for noise in range(4)]
@@ -172,20 +172,20 @@ async def test_a_wrong_mark_is_told_by_two_pictures_and_no_more_are_taken(
 
 
 @pytest.mark.slow
-async def test_what_one_picture_alone_shows_is_not_told(activity: Activity) -> None:
+async def test_a_mark_in_a_single_picture_is_not_reported(activity: Activity) -> None:
     shown = [picture(1 << 7, 0), *(picture(0, noise) for noise in range(1, 5))]
     seen = await seen_in(shown, activity)
     assert seen.state in ("occluded", "correctly marked")
 
 
 @pytest.mark.slow
-async def test_a_picture_that_stands_still_tells_of_one_moment(activity: Activity) -> None:
+async def test_a_frozen_picture_counts_as_one_moment(activity: Activity) -> None:
     seen = await seen_in([picture(1 << 7, 0)] * 5, activity)
     assert (seen.state, seen.pictures) == ("occluded", 1)
 
 
 @pytest.mark.slow
-async def test_pictures_that_come_at_once_tell_of_one_moment(activity: Activity) -> None:
+async def test_pictures_in_quick_succession_count_as_one_moment(activity: Activity) -> None:
     shown = [picture(1 << 7, noise) for noise in range(4)]
     seen = await seen_in(shown, activity, apart=0.01)
     assert (seen.state, seen.pictures) == ("occluded", 1)
@@ -193,6 +193,6 @@ async def test_pictures_that_come_at_once_tell_of_one_moment(activity: Activity)
     assert (quick.state, quick.pictures) == ("incorrectly marked", 2)
 
 
-async def test_where_no_picture_comes_nothing_is_told(activity: Activity) -> None:
+async def test_a_look_without_pictures_reads_occluded(activity: Activity) -> None:
     seen = await seen_in([], activity)
     assert (seen.card, seen.state, seen.pictures) == (None, "occluded", 0)

@@ -1,4 +1,4 @@
-"""Cards are read as they lie there; what cannot be told is said so; foreign ones are refused."""
+"""Reading cards: uncertain cells are reported as hidden, and cards of other decks refused."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def taken(marked: int, view: View = CLEAN, *, card: int = 17, seed: int = 5) -> 
 @pytest.mark.slow
 @pytest.mark.parametrize("tilt", [0, 35, 60])
 @pytest.mark.parametrize("marked", [0, 0b00100_01010_10001_00000_11111])
-def test_a_card_is_read_as_it_lies_there(reader: CardReader, tilt: int, marked: int) -> None:
+def test_a_clean_card_is_read_at_any_tilt(reader: CardReader, tilt: int, marked: int) -> None:
     frame = taken(marked, replace(CLEAN, tilt=float(tilt), spin=200.0, size=(800, 600)))
     reading = reader.read(frame.picture)
     assert (reading.card, reading.marked, reading.hidden) == (17, frame.marked, 0)
@@ -70,7 +70,7 @@ def test_rendered_frames_are_never_read_wrongly(reader: CardReader) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sort", [odd_chip, sheer_chip])
-def test_no_thing_that_lies_on_a_number_is_taken_for_paper(
+def test_odd_objects_on_a_number_are_not_read_as_bare_paper(
     reader: CardReader, sort: Callable[[np.random.Generator], Chip]
 ) -> None:
     odd = CardCamera(reader.deck, title="Bingo", straddling=0.0, odd=1.0, oddity=sort)
@@ -104,7 +104,7 @@ def test_cells_under_a_hand_are_hidden_and_the_others_are_read(reader: CardReade
 
 
 @pytest.mark.slow
-def test_a_card_of_another_deck_is_not_claimed(reader: CardReader) -> None:
+def test_a_card_of_another_deck_is_refused(reader: CardReader) -> None:
     random = np.random.default_rng(1)
     picture = camera(deck_seed=2).take(17, {}, CLEAN, random).picture
     reading = reader.read(picture)
@@ -114,7 +114,7 @@ def test_a_card_of_another_deck_is_not_claimed(reader: CardReader) -> None:
 
 
 @pytest.mark.parametrize("bare", [0, 0b1, 0b10000_00000_00000_00010_00000])
-def test_a_full_card_is_read_though_no_number_lies_bare(reader: CardReader, bare: int) -> None:
+def test_a_fully_marked_card_is_read(reader: CardReader, bare: int) -> None:
     frame = taken(ALL & ~bare & ~reader.deck.free, card=42)
     reading = reader.read(frame.picture)
     assert reading.card == 42
@@ -132,7 +132,7 @@ def test_a_bare_number_of_another_deck_shows_that_a_card_is_foreign(reader: Card
 
 
 @pytest.mark.slow
-def test_what_is_no_card_is_not_claimed(reader: CardReader) -> None:
+def test_noise_and_covered_cards_are_not_read_as_cards(reader: CardReader) -> None:
     noise = np.random.default_rng(2).integers(0, 256, (240, 320, 3), np.uint8)
     assert reader.read(noise).problem == NO_TAGS
     covered = taken(0).picture.copy()
@@ -166,7 +166,7 @@ def reading_of(
     return reader.told(card, rows)
 
 
-def test_what_may_be_a_finger_is_told_marked_only_where_there_is_no_hand(
+def test_an_uncertain_mark_counts_only_if_no_hand_is_in_sight(
     reader: CardReader,
 ) -> None:
     unsure = {2: (0.92, 0.0, 0.08), 6: (0.0, 0.98, 0.02)}
@@ -176,7 +176,7 @@ def test_what_may_be_a_finger_is_told_marked_only_where_there_is_no_hand(
     assert (reading.marked, reading.hidden) == (0, 1 << 6 | 1 << 7)
 
 
-def test_frames_are_fused_and_what_one_hides_another_shows(reader: CardReader) -> None:
+def test_fused_frames_fill_in_cells_that_one_frame_hides(reader: CardReader) -> None:
     hidden, seen = (0.02, 0.02, 0.96), (0.0005, 0.999, 0.0005)
     first = reading_of(reader, 3, {0: hidden, 7: seen})
     second = reading_of(reader, 3, {0: seen, 7: seen, 8: hidden})
@@ -185,7 +185,7 @@ def test_frames_are_fused_and_what_one_hides_another_shows(reader: CardReader) -
     assert (fused.card, fused.marked, fused.hidden) == (3, 1 << 0 | 1 << 7, 0)
 
 
-def test_frames_that_contradict_each_other_tell_nothing(reader: CardReader) -> None:
+def test_contradicting_frames_hide_the_cell_or_the_card(reader: CardReader) -> None:
     yes, no = (0.001, 0.998, 0.001), (0.998, 0.001, 0.001)
     fused = reader.fuse([reading_of(reader, 3, {4: yes}), reading_of(reader, 3, {4: no})])
     assert fused.hidden == 1 << 4
@@ -210,7 +210,7 @@ def test_a_hidden_cell_matters_only_where_it_could_change_the_state(
     assert reader.state(reader.nothing(NO_TAGS), states, called) == "occluded"
 
 
-def test_a_state_rests_only_on_cells_that_are_sure(reader: CardReader, activity: Activity) -> None:
+def test_a_card_state_uses_only_certain_cells(reader: CardReader, activity: Activity) -> None:
     numbers = numbers_of(activity.deck, 3)
     seen, covered = (0.0005, 0.999, 0.0005), (0.2, 0.0, 0.8)
     states, called = activity.user_states, set(numbers[:5])

@@ -1,4 +1,4 @@
-"""A cell is compared with its print in the light that falls on it: light changes nothing."""
+"""A cell is compared with its print under the light of the scene, so light changes no contrast."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def column(flat: RectifiedGrid, name: str) -> NDArray[Any]:
     return told
 
 
-def test_numbers_without_chips_are_as_black_as_their_card_has_them() -> None:
+def test_a_bare_number_keeps_the_contrast_of_its_print() -> None:
     flat = seen()
     for name in ("contrast of usual", "middle of usual"):
         assert np.abs(column(flat, name) - 1).max() < 0.2
@@ -72,7 +72,7 @@ def test_light_shade_and_haze_change_no_contrast(light: float, lift: float, slop
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tone", [RED, WHITE])
-def test_the_clearer_a_chip_the_blacker_the_number_beneath(
+def test_a_more_transparent_chip_shows_more_of_its_number(
     tone: tuple[float, float, float],
 ) -> None:
     for clear in (0.0, 0.3, 0.6, 0.8):
@@ -83,7 +83,7 @@ def test_the_clearer_a_chip_the_blacker_the_number_beneath(
 
 
 @pytest.mark.slow
-def test_all_sorts_of_things_are_drawn_where_they_lie() -> None:
+def test_odd_objects_are_drawn_at_their_cells() -> None:
     random = np.random.default_rng(8)
     empty = camera().take(17, {}, replace(VIEW, noise=0), np.random.default_rng(1)).picture
     for _ in range(12):

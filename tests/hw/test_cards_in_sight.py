@@ -1,4 +1,4 @@
-"""All cards in a picture are noticed: where there are several, none is taken for the person's."""
+"""Every card in a picture is noticed. If there are several, none is taken for the person's."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def beside(*frames: RenderedFrame) -> np.ndarray:
 
 
 @pytest.mark.parametrize("order", [(17, 31), (31, 17)])
-def test_of_two_cards_none_is_read_and_both_are_named(
+def test_two_cards_in_sight_are_named_and_neither_is_read(
     reader: CardReader, camera: CardCamera, order: tuple[int, int]
 ) -> None:
     reading = reader.read(beside(*(taken(camera, card) for card in order)))
@@ -71,7 +71,7 @@ def test_of_two_cards_none_is_read_and_both_are_named(
     [UPPER, LOWER, TAGS[:3], (TAGS[0], TAGS[2], TAGS[3]), TAGS[1:]],
     ids=["upper", "lower", "all but the last", "all but the second", "all but the first"],
 )
-def test_a_card_whose_tags_are_partly_hidden_is_noticed_beside_another(
+def test_a_card_with_hidden_tags_is_noticed_beside_another_card(
     reader: CardReader, camera: CardCamera, hidden: tuple[Box, ...]
 ) -> None:
     own = covered(camera, taken(camera, 17), *hidden)
@@ -79,9 +79,7 @@ def test_a_card_whose_tags_are_partly_hidden_is_noticed_beside_another(
     assert reading.card is None and reading.cards == (17, 31)
 
 
-def test_a_card_is_noticed_by_one_tag_however_far_it_is_out_of_the_picture(
-    reader: CardReader, camera: CardCamera
-) -> None:
+def test_one_visible_tag_is_enough_to_notice_a_card(reader: CardReader, camera: CardCamera) -> None:
     corner = np.array(taken(camera, 17).corners)
     left = int(corner[:, 0].max()) - 44  # of it just the tags at the right, one of them covered
     own = covered(camera, taken(camera, 17), TAGS[1]).picture[:, left:]
@@ -90,7 +88,7 @@ def test_a_card_is_noticed_by_one_tag_however_far_it_is_out_of_the_picture(
 
 
 @pytest.mark.slow
-def test_two_copies_of_one_card_are_two_cards(reader: CardReader, camera: CardCamera) -> None:
+def test_two_copies_of_a_card_count_as_two(reader: CardReader, camera: CardCamera) -> None:
     both = beside(taken(camera, 17, 1), taken(camera, 17, 2, replace(VIEW, spin=20, pixels=27)))
     reading = reader.read(both)
     assert reading.card is None and reading.cards == (17, 17)
@@ -106,7 +104,7 @@ def test_three_cards_are_counted(reader: CardReader, camera: CardCamera) -> None
 
 
 @pytest.mark.slow
-def test_a_card_alone_is_read_and_named(reader: CardReader, camera: CardCamera) -> None:
+def test_a_single_card_is_read_and_named(reader: CardReader, camera: CardCamera) -> None:
     for tilt in (0.0, 45.0):
         reading = reader.read(taken(camera, 17, view=replace(VIEW, tilt=tilt)).picture)
         assert reading.card == 17 and reading.cards == (17,)
@@ -124,7 +122,7 @@ def test_a_bent_card_is_one(reader: CardReader, camera: CardCamera) -> None:
 
 
 @pytest.mark.slow
-def test_what_happens_to_look_like_a_tag_is_no_card() -> None:
+def test_background_details_are_not_mistaken_for_tags() -> None:
     """Rooms and tables are full of detail; hardly any of it is black on white."""
     for number in range(12):
         random = np.random.default_rng([77, number])

@@ -1,4 +1,4 @@
-"""The chest screen tells its pages what to show, and knows whether people really see it."""
+"""The chest screen sends pictures to its pages, and knows whether they are really shown."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CALL = Picture("Next number", "B-12", ("N-40", "O-75"), "Ana")
 
 
 class Page:
-    """A tablet, as its browser speaks; `answers`: it says that it has drawn what it was told."""
+    """A tablet's browser; `answers`: it confirms each picture that it has drawn."""
 
     def __init__(self, screen: WebChestScreen, name: str, *, answers: bool = True) -> None:
         self._screen, self.name, self.answers = screen, name, answers
@@ -111,7 +111,7 @@ class TestAnsweringCalls:
         page.go()
         late.go()
 
-    async def test_a_colleague_who_looks_on_may_answer_and_a_stranger_may_not(
+    async def test_a_viewer_may_answer_a_call_and_a_stranger_may_not(
         self, screen: WebChestScreen
     ) -> None:
         (page,) = await opened(screen, "one")
@@ -126,7 +126,7 @@ class TestAnsweringCalls:
         await until(lambda: screen.answered == ("staff",))
         page.go()
 
-    async def test_a_process_that_is_started_again_shows_the_buttons_again(
+    async def test_a_restarted_process_shows_the_call_buttons_again(
         self, screen: WebChestScreen
     ) -> None:
         screen.offer({"staff": "Station 2"})
@@ -140,7 +140,7 @@ class TestAnsweringCalls:
 
 
 class TestShowing:
-    async def test_what_is_shown_is_on_every_page_when_show_returns(
+    async def test_show_returns_after_every_page_has_the_picture(
         self, screen: WebChestScreen
     ) -> None:
         pages = await opened(screen, "one", "two")
@@ -153,7 +153,9 @@ class TestShowing:
             }  # fmt: skip
             page.go()
 
-    async def test_who_comes_later_sees_what_is_on(self, screen: WebChestScreen) -> None:
+    async def test_a_page_that_joins_late_gets_the_current_picture(
+        self, screen: WebChestScreen
+    ) -> None:
         (early,) = await opened(screen, "early")
         await screen.show(Picture("first"))
         await screen.show(Picture("second"))  # is over when the page has drawn it
@@ -163,7 +165,7 @@ class TestShowing:
         early.go()
         late.go()
 
-    async def test_pictures_that_follow_at_once_end_with_the_last(
+    async def test_pictures_in_quick_succession_end_with_the_last(
         self, screen: WebChestScreen
     ) -> None:
         (page,) = await opened(screen, "one")
@@ -171,7 +173,7 @@ class TestShowing:
         assert page.texts[-1] == "19"
         page.go()
 
-    async def test_one_page_that_answers_is_enough(self, screen: WebChestScreen) -> None:
+    async def test_show_returns_if_one_page_confirms(self, screen: WebChestScreen) -> None:
         good, bad = await opened(screen, "good", "bad")
         bad.answers = False
         await screen.show(CALL)
@@ -188,7 +190,9 @@ class TestShowing:
             await screen.show(CALL)
         page.go()
 
-    async def test_whatever_is_said_comes_back_as_it_was(self, screen: WebChestScreen) -> None:
+    async def test_control_and_unusual_characters_arrive_unchanged(
+        self, screen: WebChestScreen
+    ) -> None:
         (page,) = await opened(screen, "one")
         for text in (
             "Next \u2028\n\n",
@@ -202,12 +206,12 @@ class TestShowing:
 
 
 class TestReading:
-    async def test_nobody_looks_at_first(self, screen: WebChestScreen) -> None:
+    async def test_the_screen_warns_until_a_page_opens(self, screen: WebChestScreen) -> None:
         await screen.show(CALL)  # nobody is there who could fail to take it
         assert screen.reading().state == "WARN"
         assert screen.url in screen.why and screen.code in screen.why
 
-    async def test_a_page_that_answers_is_well_and_one_that_has_gone_is_stale(self) -> None:
+    async def test_the_reading_is_ok_with_a_page_and_stale_without(self) -> None:
         now = 50.0
         screen = WebChestScreen(port=0, clock=lambda: now)
         await screen.start()
@@ -237,9 +241,7 @@ class TestReading:
         await until(lambda: screen.reading().state == "OK")
         page.go()
 
-    async def test_the_same_page_after_a_lost_link_is_one_page(
-        self, screen: WebChestScreen
-    ) -> None:
+    async def test_a_reconnected_page_counts_once(self, screen: WebChestScreen) -> None:
         (page,) = await opened(screen, "one")
         again = Page(screen, "one")
         await until(lambda: bool(again.shown))
@@ -249,7 +251,7 @@ class TestReading:
         page.go()
         again.go()
 
-    async def test_a_port_in_use_is_told_and_waited_for(self, screen: WebChestScreen) -> None:
+    async def test_the_screen_reports_a_used_port_and_retries(self, screen: WebChestScreen) -> None:
         second = WebChestScreen(port=screen.port)
         await second.start()
         assert second.reading().state == "ERROR" and "cannot listen" in second.why
@@ -258,7 +260,7 @@ class TestReading:
         await second.close()
 
     @pytest.mark.parametrize(("host", "port"), [("127.0.0.1", 70_000), ("a..b", 0)])
-    async def test_a_place_that_cannot_be_is_told(self, host: str, port: int) -> None:
+    async def test_an_invalid_address_is_reported_as_an_error(self, host: str, port: int) -> None:
         screen = WebChestScreen(host, port)
         await screen.start()
         assert screen.reading().state == "ERROR"
@@ -275,9 +277,7 @@ def files() -> int:
 
 
 class TestItsProcess:
-    async def test_where_it_ends_it_is_started_again_and_pages_come_back(
-        self, screen: WebChestScreen
-    ) -> None:
+    async def test_a_killed_process_is_restarted_on_its_port(self, screen: WebChestScreen) -> None:
         (page,) = await opened(screen, "one")
         await screen.show(CALL)
         port = screen.port
@@ -292,7 +292,7 @@ class TestItsProcess:
         assert again.shown[-1]["number"] == CALL.number
         again.go()
 
-    async def test_strangers_take_no_file_of_the_process_that_drives(
+    async def test_connections_from_strangers_open_no_files_in_the_robot_process(
         self, screen: WebChestScreen
     ) -> None:
         (page,) = await opened(screen, "mine")

@@ -1,4 +1,4 @@
-"""The chest screen's page trusts paired tablets alone, and strangers cannot keep it from them."""
+"""The chest screen's server trusts only paired tablets, and strangers cannot lock them out."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class TestRequests:
             ("GET", "/" + "x" * 9000, 400), ("GET", "http://[", 400),
         ],
     )  # fmt: skip
-    async def test_anything_else_is_refused(
+    async def test_unknown_requests_are_refused(
         self, server: Served, method: str, target: str, status: int
     ) -> None:
         answer = await ask(server.port, method, target, COOKIE)
@@ -111,11 +111,11 @@ class TestRequests:
         [b"Content-Length: 257\r\n", b"Content-Length: x\r\n", b"Transfer-Encoding: a\r\n",
          b"Content-Length: " + b"9" * 5000 + b"\r\n"],
     )  # fmt: skip
-    async def test_bodies_that_are_no_use_are_refused(self, server: Served, line: bytes) -> None:
+    async def test_invalid_bodies_are_refused(self, server: Served, line: bytes) -> None:
         answer = await ask(server.port, "POST", "/seen", line)
         assert answer.startswith(b"HTTP/1.1 400 ")
 
-    async def test_the_file_of_a_picture_is_for_paired_tablets_alone(
+    async def test_only_paired_tablets_get_the_file_of_a_picture(
         self, server: Served, tmp_path: Path
     ) -> None:
         photo = make_picture(tmp_path / "photo.png")
@@ -139,7 +139,7 @@ class TestRequests:
         writer.close()
 
     @given(st.text(max_size=40))
-    def test_an_event_is_one_line_of_plain_signs_and_comes_back(self, text: str) -> None:
+    def test_an_event_is_one_line_of_printable_ascii(self, text: str) -> None:
         server = Served()
         server.show(7, {"text": text})
         kind, line, *rest = server.newest.decode().split("\n")
@@ -160,7 +160,7 @@ class TestStrangers:
             f"Cookie: {PAIRING.cookie}={'0' * 16}.{'0' * 64}\r\n".encode(),
         ],
     )  # fmt: skip
-    async def test_who_is_not_paired_sees_nothing_and_says_nothing(
+    async def test_an_unpaired_client_can_neither_read_nor_post(
         self, server: Served, method: str, target: str, cookie: bytes
     ) -> None:
         _, writer = await events(server, "one")  # a paired one is open under that name
@@ -182,7 +182,7 @@ class TestStrangers:
             ("127.0.0.1:80", b"Origin: null\r\n", 421),
         ],
     )  # fmt: skip
-    async def test_a_page_that_is_called_by_another_name_is_refused(
+    async def test_requests_for_another_host_or_origin_are_refused(
         self, server: Served, host: str, more: bytes, status: int
     ) -> None:
         answer = await ask(server.port, "GET", "/", COOKIE + more, host=host)
@@ -205,7 +205,7 @@ class TestStrangers:
         for one in (*writers, writer):
             one.transport.abort()
 
-    async def test_a_request_that_comes_in_drops_has_no_longer_than_others(
+    async def test_a_request_sent_byte_by_byte_gets_no_extra_time(
         self, server: Served, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(chest_server, "ASK_SECONDS", 0.2)
@@ -222,7 +222,7 @@ class TestStrangers:
         await until(lambda: server.connections == 0)
         writer.close()
 
-    async def test_pages_that_hang_make_room_for_a_paired_tablet(
+    async def test_hanging_pages_give_way_to_a_paired_tablet(
         self, server: Served, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         opened = [await events(server, f"p{n}") for n in range(chest_server.MOST_PAGES)]
@@ -237,13 +237,13 @@ class TestStrangers:
         for one in (*(writer for _, writer in opened), late, another):
             one.close()
 
-    async def test_a_page_that_goes_is_told(self, server: Served) -> None:
+    async def test_the_server_reports_a_closed_page(self, server: Served) -> None:
         reader, writer = await events(server, "one")
         assert await status(reader) == 200
         writer.transport.abort()
         await until(lambda: server.told == [{"gone": "one"}])
 
-    async def test_no_page_says_that_it_has_drawn_what_was_never_shown(
+    async def test_a_page_cannot_confirm_a_picture_that_was_never_shown(
         self, server: Served
     ) -> None:
         reader, writer = await events(server, "one")
@@ -254,7 +254,9 @@ class TestStrangers:
 
 
 class TestPairing:
-    async def test_a_viewer_sees_what_is_shown_and_nobody_hears_of_it(self, server: Served) -> None:
+    async def test_a_viewer_sees_the_picture_and_is_not_reported_as_a_page(
+        self, server: Served
+    ) -> None:
         answer = await ask(server.port, "POST", "/pair", body=b"1234 5678 viewer")
         cookie = answer.split(b"Set-Cookie: ")[1].split(b";")[0]
         assert PAIRING.is_viewer(cookie.decode().partition("=")[2])
@@ -270,7 +272,7 @@ class TestPairing:
         assert [told["page"] for told in server.told[said:]] == ["one"]
         writer.close()
 
-    async def test_the_code_is_given_once_for_a_token_that_holds(self, server: Served) -> None:
+    async def test_a_tablet_exchanges_the_code_for_a_lasting_token(self, server: Served) -> None:
         answer = await ask(server.port, "POST", "/pair", body=b"1234 5678")
         assert answer.startswith(b"HTTP/1.1 204 ")
         (line,) = (line for line in answer.decode().split("\r\n") if line.startswith("Set-Cookie"))
@@ -283,17 +285,19 @@ class TestPairing:
         assert not Pairing().knows(cookie.partition("=")[2])
 
     @pytest.mark.parametrize("body", [b"", b"12345679", b"123456789", b"\xff" * 8, b"x" * 256])
-    async def test_another_code_pairs_nothing(self, server: Served, body: bytes) -> None:
+    async def test_a_wrong_code_does_not_pair(self, server: Served, body: bytes) -> None:
         answer = await ask(server.port, "POST", "/pair", body=body)
         assert answer.startswith(b"HTTP/1.1 403 ") and b"Set-Cookie" not in answer
 
-    async def test_after_too_many_wrong_codes_the_right_one_waits_too(self, server: Served) -> None:
+    async def test_the_right_code_must_wait_after_too_many_wrong_codes(
+        self, server: Served
+    ) -> None:
         for _ in range(MOST_WRONG):
             await ask(server.port, "POST", "/pair", body=b"00000000")
         answer = await ask(server.port, "POST", "/pair", body=b"12345678")
         assert answer.startswith(b"HTTP/1.1 429 ")
 
-    def test_wrong_codes_are_limited_for_an_address_and_for_all_and_forgotten(self) -> None:
+    def test_wrong_codes_are_limited_for_each_address_and_in_total_for_a_while(self) -> None:
         now = 0.0
         check = CodeCheck("12345678", lambda: now)
         for _ in range(MOST_WRONG):
@@ -310,7 +314,7 @@ class TestPairing:
         now += WINDOW_SECONDS
         assert check.right("12345678", "a") and check.right("12345678", "c")
 
-    def test_the_data_folder_keeps_it_for_its_owner_alone(self, tmp_path: Path) -> None:
+    def test_the_pairing_file_is_readable_only_by_its_owner(self, tmp_path: Path) -> None:
         first = keep_pairing(tmp_path)
         assert keep_pairing(tmp_path) == first
         assert stat.S_IMODE((tmp_path / FILE).stat().st_mode) == 0o600
@@ -318,11 +322,11 @@ class TestPairing:
         assert first.key.hex() not in repr(first) and first.code not in repr(first)
 
     @pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"key": "00", "code": "1"}', b"\xff"])
-    def test_one_that_is_damaged_is_made_anew(self, tmp_path: Path, content: bytes) -> None:
+    def test_a_damaged_pairing_file_is_replaced(self, tmp_path: Path, content: bytes) -> None:
         (tmp_path / FILE).write_bytes(content)
         made = keep_pairing(tmp_path)
         assert keep_pairing(tmp_path) == made
 
-    def test_where_nothing_can_be_kept_it_is_new_each_time(self, tmp_path: Path) -> None:
+    def test_the_pairing_is_new_each_time_without_a_data_folder(self, tmp_path: Path) -> None:
         assert keep_pairing(tmp_path / "none") != keep_pairing(tmp_path / "none")
         assert not (tmp_path / "none").exists()

@@ -1,4 +1,4 @@
-"""The look at the scanner that all who drive share: slower before what is near, then standing."""
+"""The speed limit by the scan that every driver shares: slower near objects, then a stop."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def past(twist: Twist, *people: Track) -> Twist:
 
 
 class TestRoom:
-    def test_room_ends_at_what_is_seen(self) -> None:
+    def test_the_room_ahead_ends_at_the_nearest_scan_point(self) -> None:
         assert room_ahead(at((2.0, 0.0)), 0.0, LIMITS) == pytest.approx(
             2.0 - LIMITS.radius - LIMITS.clearance, abs=0.03
         )
         assert room_ahead(at((-0.6, 0.1)), 0.0, LIMITS) == inf
 
     @given(st.floats(0.05, 0.25), st.floats(-pi, pi), st.floats(-2, 2))
-    def test_what_it_touches_already_holds_it_only_where_driving_brings_it_nearer(
+    def test_a_touched_object_stops_only_driving_towards_it(
         self, far: float, bearing: float, curvature: float
     ) -> None:
         point = far * np.cos(bearing), far * np.sin(bearing)
@@ -61,33 +61,33 @@ class TestRoom:
 
 
 class TestPeople:
-    def test_with_nobody_around_it_drives_as_it_is_told(self) -> None:
+    def test_a_command_is_unchanged_without_people(self) -> None:
         assert limit_near_people(Twist(0.5, 0.1), NOBODY, LIMITS) == Twist(0.5, 0.1)
 
-    def test_it_slows_down_before_somebody_who_stands_and_stops_short_of_them(self) -> None:
+    def test_the_robot_slows_down_and_stops_before_a_standing_person(self) -> None:
         speeds = [past(Twist(0.5, 0.0), person(x, 0.0)).forward for x in (2.5, 1.1, 0.9, 0.6)]
         assert speeds[0] == 0.5 and speeds == sorted(speeds, reverse=True)
         assert 0 < speeds[2] < 0.5 and speeds[3] == 0.0
 
-    def test_it_stands_before_who_comes_and_drives_behind_who_goes(self) -> None:
+    def test_the_robot_stops_for_approaching_people_and_follows_leaving_ones(self) -> None:
         assert past(Twist(0.5, 0.0), person(1.4, 0.0, -1.2)).forward <= 0.15
         assert past(Twist(0.5, 0.0), person(1.0, 0.0, -1.2)) == STILL
         assert past(Twist(0.5, 0.0), person(2.0, 0.0, 0.8)).forward == 0.5
 
-    def test_who_walks_away_close_by_may_turn_back_and_is_followed_slowly(self) -> None:
+    def test_the_robot_follows_a_person_close_ahead_slowly(self) -> None:
         away = past(Twist(0.5, 0.0), person(1.2, 0.0, 0.8)).forward
         assert 0 < away < past(Twist(0.5, 0.0), person(1.2, 0.0)).forward
 
-    def test_who_walked_faster_lately_is_followed_more_slowly(self) -> None:
+    def test_the_robot_follows_a_recently_faster_walker_more_slowly(self) -> None:
         slow = person(1.2, 0.0, 0.4)
         paces = (0.4, 0.6, 0.8, 1.4)
         speeds = [past(Twist(0.5, 0.0), replace(slow, pace=pace)).forward for pace in paces]
         assert speeds == sorted(speeds, reverse=True) and speeds[0] > speeds[-1] > 0
 
-    def test_it_stands_for_who_crosses_its_way(self) -> None:
+    def test_the_robot_stops_for_a_person_crossing_its_path(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
 
-    def test_it_is_slower_while_somebody_who_walked_is_out_of_sight_behind_it(self) -> None:
+    def test_the_robot_slows_down_while_a_walker_is_hidden_behind_it(self) -> None:
         behind = replace(person(-1.2, 0.2, 0.8), hidden=True)
         assert past(Twist(0.5, 0.2), behind) == Twist(
             LIMITS.people_speed, 0.2 * LIMITS.people_speed / 0.5
@@ -95,22 +95,22 @@ class TestPeople:
         assert past(Twist(0.5, 0.2), replace(behind, hidden=False)) == Twist(0.5, 0.2)
         assert past(Twist(0.5, 0.2), replace(behind, pace=0.0)) == Twist(0.5, 0.2)
 
-    def test_who_has_just_appeared_is_kept_further_off(self) -> None:
+    def test_the_robot_slows_down_more_for_a_new_track(self) -> None:
         known, new = (past(Twist(0.5, 0.0), person(1.2, 0.3, age=a)).forward for a in (3.0, 0.3))
         assert new < known
 
-    def test_it_keeps_to_the_arc_when_it_is_slower(self) -> None:
+    def test_a_slower_command_keeps_its_arc(self) -> None:
         twist = past(Twist(0.5, 0.5), person(0.95, 0.3))
         assert 0 < twist.forward < 0.5 and twist.turn == pytest.approx(twist.forward)
 
-    def test_from_who_stands_close_it_may_drive_away_and_turn(self) -> None:
+    def test_the_robot_may_drive_away_from_a_close_person_and_turn(self) -> None:
         assert past(Twist(0.4, 0.0), person(-0.5, 0.1)).forward == 0.4
         assert past(Twist(-0.4, 0.0), person(0.5, 0.1)).forward == -0.4
         assert past(Twist(0.0, 1.0), person(0.5, 0.1)) == Twist(0.0, 1.0)
 
     @pytest.mark.slow
     @given(st.floats(0.3, 2.5), st.floats(-pi, pi), st.floats(-1.4, 1.4), st.floats(-1.4, 1.4))
-    def test_driving_it_never_touches_who_goes_on_as_they_do(
+    def test_a_drive_never_touches_a_person_with_constant_velocity(
         self, far: float, bearing: float, vx: float, vy: float
     ) -> None:
         """Commands come a tenth of a second late, and the base brakes at 1 m/s2."""
@@ -131,15 +131,15 @@ class TestPeople:
 
 
 class TestByHand:
-    def test_with_nothing_around_it_drives_as_it_is_told(self) -> None:
+    def test_a_command_by_hand_is_unchanged_in_free_space(self) -> None:
         assert by_hand(Twist(0.3, -0.2)) == Twist(0.3, -0.2)
 
-    def test_it_drives_slowly_before_what_is_near_and_stands_before_what_is_close(self) -> None:
+    def test_a_drive_by_hand_slows_down_near_objects_and_stops_close_to_them(self) -> None:
         speeds = [by_hand(Twist(0.5, 0.0), (x, 0.0)).forward for x in (2.5, 1.0, 0.8, 0.5)]
         assert speeds[0] == 0.5 and speeds[3] == 0.0
         assert speeds == sorted(speeds, reverse=True) and speeds[2] < 0.3
 
-    def test_from_what_is_close_it_can_be_turned_away_and_driven_back(self) -> None:
+    def test_staff_can_turn_and_back_away_from_a_close_object(self) -> None:
         around = (0.35, 0.0), (0.3, 0.2)
         assert by_hand(Twist(0.3, 0.0), *around) == STILL
         assert by_hand(Twist(-0.3, 0.0), *around).forward == -LIMITS.unseen_speed
@@ -147,7 +147,7 @@ class TestByHand:
         assert turned == Twist(0.0, LIMITS.close_turn)
         assert by_hand(Twist(0.3, 1.0), *around) == turned
 
-    def test_where_it_does_not_see_it_drives_slowly_and_up_to_nothing_that_it_sees(self) -> None:
+    def test_a_drive_backwards_is_slow_and_stops_at_seen_objects(self) -> None:
         assert by_hand(Twist(-0.5, 0.0)) == Twist(-LIMITS.unseen_speed, 0.0)
         assert by_hand(Twist(-0.5, 0.0), (-0.45, 0.2)) == STILL
 
@@ -157,7 +157,7 @@ class TestByHand:
         st.floats(-2, 2),
         st.lists(st.tuples(st.floats(-2, 2), st.floats(-2, 2)), min_size=1, max_size=6),
     )
-    def test_however_it_is_driven_it_touches_nobody_who_stands(
+    def test_no_command_by_hand_touches_a_standing_person(
         self, forward: float, turn: float, points: list[tuple[float, float]]
     ) -> None:
         """Commands come a tenth of a second late, and the base brakes at 1 m/s2."""

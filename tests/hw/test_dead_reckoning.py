@@ -1,4 +1,4 @@
-"""A drive without a map: the pose by the wheels, and the scans that are recorded of it."""
+"""A drive without a map: the pose from wheel odometry, and the recording of its scans."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ metres = st.floats(-50, 50)
     st.floats(-pi, pi),
     st.lists(st.one_of(st.floats(0.05, 9.9), st.just(float("inf"))), min_size=2, max_size=40),
 )
-def test_a_recorded_scan_is_read_as_it_was(
+def test_a_recorded_scan_is_read_back_unchanged(
     tmp_path_factory: pytest.TempPathFactory,
     x: float,
     y: float,
@@ -53,7 +53,7 @@ def test_a_recorded_scan_is_read_as_it_was(
     assert found.stamp == 3.5
 
 
-def test_a_robot_that_stands_records_one_scan(tmp_path: Path) -> None:
+def test_a_standing_robot_records_one_scan(tmp_path: Path) -> None:
     recorder = ScanRecorder(tmp_path / "a.log")
     scan = look(room_sides(ROOM), Pose(5.0, 2.0, 0.0))
     for _ in range(10):
@@ -71,7 +71,7 @@ def test_an_earlier_drive_is_not_overwritten(tmp_path: Path) -> None:
     assert log.read_text() == "kept"
 
 
-def test_with_a_full_disk_the_robot_can_still_be_driven(
+def test_a_full_disk_does_not_stop_the_drive(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = Path("/dev/full").open("w", encoding="ascii", buffering=1)  # noqa: SIM115
@@ -86,7 +86,7 @@ def test_with_a_full_disk_the_robot_can_still_be_driven(
         full.close()
 
 
-def test_a_map_from_the_recording_has_the_walls_where_they_are(tmp_path: Path) -> None:
+def test_a_map_from_a_recording_has_its_walls_in_place(tmp_path: Path) -> None:
     start = Pose(5.0, 1.5, pi / 2)
     recorder = ScanRecorder(tmp_path / "a.log")
     navigator = DeadReckoning(recorder, start, LASER)

@@ -1,4 +1,4 @@
-"""A card is judged only where it is known to be that of the person who sits there."""
+"""A card is judged only if it is known to belong to the person who sits there."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def wrongly_marked(number: int, **how: object) -> LaidCard:
     return LaidCard(number, marked=1, **how)  # type: ignore[arg-type]
 
 
-def test_of_several_cards_before_somebody_none_is_judged(world: LiveWorld, link: FakeLink) -> None:
+def test_no_card_is_judged_if_several_lie_before_a_person(world: LiveWorld, link: FakeLink) -> None:
     world.cards.dealt.deal({"user1": OWN, "user2": NEIGHBOURS})
     seen = visit(world, link, 1, wrongly_marked(OWN, others=(NEIGHBOURS,)))
     assert seen == "occluded" and world.scene().card is None
@@ -72,7 +72,7 @@ def test_of_several_cards_before_somebody_none_is_judged(world: LiveWorld, link:
     assert world.cards.doubt == expected
 
 
-def test_of_two_copies_of_a_card_none_is_judged(world: LiveWorld, link: FakeLink) -> None:
+def test_no_card_is_judged_if_two_copies_are_in_sight(world: LiveWorld, link: FakeLink) -> None:
     world.cards.dealt.deal({"user1": OWN})
     assert visit(world, link, 1, wrongly_marked(OWN, others=(OWN,))) == "occluded"
     assert [one.why for one in world.cards.news if isinstance(one, CardDoubt)] == ["copies"]
@@ -81,7 +81,7 @@ def test_of_two_copies_of_a_card_none_is_judged(world: LiveWorld, link: FakeLink
 @pytest.mark.parametrize(
     ("card", "why", "owner"), [(NEIGHBOURS, "another's card", "user2"), (FOREIGN, "other card", "")]
 )
-def test_a_card_that_was_dealt_to_another_or_to_nobody_is_not_judged(
+def test_a_card_of_another_person_or_of_nobody_is_not_judged(
     world: LiveWorld, link: FakeLink, card: int, why: str, owner: str
 ) -> None:
     world.cards.dealt.deal({"user1": OWN, "user2": NEIGHBOURS})
@@ -95,7 +95,9 @@ def test_a_card_that_was_dealt_to_another_or_to_nobody_is_not_judged(
     assert world.cards.doubt is None
 
 
-def test_nothing_is_asked_about_a_card_that_is_not_theirs(world: LiveWorld, link: FakeLink) -> None:
+def test_the_robot_asks_nothing_about_a_card_of_another_person(
+    world: LiveWorld, link: FakeLink
+) -> None:
     world.cards.dealt.deal({"user1": OWN})
     visit(world, link, 1, wrongly_marked(OWN))
     link.cards["user1"].number = FOREIGN  # the cards were changed while the robot stood there
@@ -105,7 +107,7 @@ def test_nothing_is_asked_about_a_card_that_is_not_theirs(world: LiveWorld, link
     assert len(link.said) == said and world.observe().situation.user_state == "occluded"
 
 
-def test_what_is_done_on_anothers_card_is_no_answer(world: LiveWorld, link: FakeLink) -> None:
+def test_a_change_on_a_swapped_card_is_no_response(world: LiveWorld, link: FakeLink) -> None:
     world.cards.dealt.deal({"user1": OWN})
     visit(world, link, 1, wrongly_marked(OWN))
 
@@ -118,9 +120,7 @@ def test_what_is_done_on_anothers_card_is_no_answer(world: LiveWorld, link: Fake
     assert outcome.response is None
 
 
-def test_whose_a_card_is_is_learnt_from_the_first_sure_sight(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_the_first_certain_sight_tells_whose_card_it_is(world: LiveWorld, link: FakeLink) -> None:
     assert visit(world, link, 1, wrongly_marked(OWN)) == "incorrectly marked"
     assert list(world.cards.news) == [CardLearnt("user1", OWN)]
     assert visit(world, link, 1, wrongly_marked(FOREIGN)) == "occluded"
@@ -130,9 +130,7 @@ def test_whose_a_card_is_is_learnt_from_the_first_sure_sight(
     assert world.cards.dealt.card_of("user1") is None
 
 
-def test_an_unsure_sight_teaches_nothing_and_is_not_judged(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_an_uncertain_sight_is_neither_learnt_nor_judged(world: LiveWorld, link: FakeLink) -> None:
     assert visit(world, link, 1, wrongly_marked(OWN, sure=False)) == "occluded"
     assert world.cards.dealt.card_of("user1") is None and not world.cards.news
     visit(world, link, 1, wrongly_marked(OWN))
@@ -142,12 +140,12 @@ def test_an_unsure_sight_teaches_nothing_and_is_not_judged(
     assert [what["identify"] for did, what in link.done if did == "card"][-1] is False
 
 
-def test_several_cards_teach_nothing(world: LiveWorld, link: FakeLink) -> None:
+def test_a_sight_of_several_cards_is_not_learnt(world: LiveWorld, link: FakeLink) -> None:
     assert visit(world, link, 1, LaidCard(OWN, others=(NEIGHBOURS,))) == "occluded"
     assert world.cards.dealt.card_of("user1") is None
 
 
-def test_a_card_goes_with_the_person_not_with_the_seat(link: FakeLink) -> None:
+def test_a_card_belongs_to_the_person_and_not_to_the_seat(link: FakeLink) -> None:
     world = world_of(link, knows_faces=True)
     world.cards.dealt.deal({"user2": NEIGHBOURS, "user4": OWN})
     link.faces["user2"] = "user4"
@@ -156,7 +154,7 @@ def test_a_card_goes_with_the_person_not_with_the_seat(link: FakeLink) -> None:
     assert visit(world, link, 2, wrongly_marked(OWN)) == "occluded"
 
 
-def test_staff_are_told_once_in_a_visit(world: LiveWorld, link: FakeLink) -> None:
+def test_staff_hear_of_a_doubtful_card_once_in_a_visit(world: LiveWorld, link: FakeLink) -> None:
     world.cards.dealt.deal({"user1": OWN})
     visit(world, link, 1, LaidCard(FOREIGN))
     for _ in range(3):
@@ -171,7 +169,7 @@ def test_staff_are_told_once_in_a_visit(world: LiveWorld, link: FakeLink) -> Non
     assert len(world.cards.news) == 3
 
 
-def test_what_staff_say_of_a_card_holds_whatever_was_seen() -> None:
+def test_a_card_given_by_staff_overrides_what_was_seen() -> None:
     dealt = DealtCards()
     assert dealt.learn("user1", NEIGHBOURS)
     assert not dealt.learn("user2", NEIGHBOURS)

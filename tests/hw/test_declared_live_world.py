@@ -1,4 +1,4 @@
-"""A live game that is declared by facts: who acts, what is told, what the robot has done count."""
+"""A live game declared by facts counts who acts, what is answered and what the robot has done."""
 
 from __future__ import annotations
 
@@ -99,27 +99,27 @@ def test_the_robot_gets_the_picture_and_the_sound_of_an_item(
     assert shown["file"] == (str(tmp_path / photo) if photo else "")
 
 
-def test_what_is_told_counts_with_the_next_look(world: DeclaredLiveWorld) -> None:
+def test_a_reported_answer_counts_at_the_next_observation(world: DeclaredLiveWorld) -> None:
     asked(world)
     assert world.tell(None, right(world))
     assert world.observe().stage == "judge"
     assert dict(world.observe().facts)["answer"] == "right"
 
 
-def test_what_is_no_answer_is_refused(world: DeclaredLiveWorld) -> None:
+def test_an_unknown_answer_is_refused(world: DeclaredLiveWorld) -> None:
     asked(world)
     assert not world.tell("user1", "something else")
     assert world.observe().stage == "listen"
 
 
-def test_an_answer_that_is_not_sure_is_not_judged(world: DeclaredLiveWorld) -> None:
+def test_an_uncertain_answer_is_not_judged(world: DeclaredLiveWorld) -> None:
     asked(world)
     world.tell("user1", right(world), certainty=0.5, source="speech")
     assert world.observe().stage == "listen"
     assert world.unsure is not None and world.unsure.told.who == "user1"
 
 
-def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
+def test_an_unclear_answer_is_asked_again_up_to_the_limit(
     world: DeclaredLiveWorld, link: FakeLink
 ) -> None:
     asked(world)
@@ -145,7 +145,7 @@ def test_whoever_answers_unclearly_is_asked_again_as_often_as_the_caps_allow(
     assert world.may_ask_again("user1")
 
 
-def test_the_pause_ends_when_somebody_answers(link: FakeLink, tmp_path: Path) -> None:
+def test_the_pause_ends_with_an_answer(link: FakeLink, tmp_path: Path) -> None:
     world = world_with(patient_trivia(tmp_path), link)
     asked(world)
     began = link.time
@@ -173,9 +173,7 @@ def test_the_pause_is_as_long_as_the_file_says(link: FakeLink, tmp_path: Path) -
         assert simulated.execute(action).seconds == pytest.approx(1.0 + 0.4 * words + pause)
 
 
-def test_a_letter_that_is_held_up_is_an_answer_once(
-    world: DeclaredLiveWorld, link: FakeLink
-) -> None:
+def test_a_held_up_letter_counts_as_one_answer(world: DeclaredLiveWorld, link: FakeLink) -> None:
     asked(world)
     items, row = world.activity.declaration.items, world.game.row
     letter = next(one for one in "abc" if items.value(row, one) == right(world))
@@ -189,7 +187,7 @@ def test_a_letter_that_is_held_up_is_an_answer_once(
     assert world.observe().stage == "judge"
 
 
-def test_a_letter_that_is_not_sure_is_asked_again(world: DeclaredLiveWorld, link: FakeLink) -> None:
+def test_an_uncertain_letter_is_asked_again(world: DeclaredLiveWorld, link: FakeLink) -> None:
     asked(world)
     link.state = replace(link.state, shows=((1, "b", link.time, 0.5), (9, "b", link.time, 1.0)))
     assert world.observe().stage == "listen"
@@ -201,14 +199,14 @@ def test_a_letter_that_is_not_sure_is_asked_again(world: DeclaredLiveWorld, link
     assert world.observe().stage == "judge"  # now it can be read
 
 
-def test_letters_count_only_where_the_file_takes_signs(link: FakeLink, tmp_path: Path) -> None:
+def test_letters_count_only_if_the_file_accepts_signs(link: FakeLink, tmp_path: Path) -> None:
     by_voice = ('from = ["sign", "speech", "button"]', 'from = ["speech"]')
     world = asked(world_with(changed_trivia(tmp_path, by_voice), link))
     link.state = replace(link.state, shows=((1, "b", link.time, 1.0),))
     assert world.observe().stage == "listen"
 
 
-def test_a_sign_that_is_up_asks_and_comes_down_when_it_was_answered(
+def test_a_raised_sign_is_a_request_until_it_is_answered(
     world: DeclaredLiveWorld, link: FakeLink
 ) -> None:
     asked(world)
@@ -225,9 +223,7 @@ def test_a_sign_that_is_up_asks_and_comes_down_when_it_was_answered(
     assert world.observe().stage == "listen" and world.observe().closed == "user3"
 
 
-def test_a_behaviour_that_was_broken_off_changes_no_fact(
-    world: DeclaredLiveWorld, link: FakeLink
-) -> None:
+def test_an_interrupted_behaviour_changes_no_fact(world: DeclaredLiveWorld, link: FakeLink) -> None:
     do(world, "welcome everyone")
     before = world.observe()
     link.breaks["perform"] = "emergency stop is pressed"
@@ -238,7 +234,7 @@ def test_a_behaviour_that_was_broken_off_changes_no_fact(
     assert after.step == before.step + 1
 
 
-def test_who_does_what_they_were_invited_to_has_complied(link: FakeLink) -> None:
+def test_a_person_who_joins_after_an_invitation_has_complied(link: FakeLink) -> None:
     world = world_of(link, "exercises")
     do(world, "welcome everyone")
     do(world, "show movement")
@@ -252,7 +248,7 @@ def test_who_does_what_they_were_invited_to_has_complied(link: FakeLink) -> None
     assert response is not None and response.complied and response.person == "user2"
 
 
-def test_nothing_told_is_not_taken_for_a_refusal(link: FakeLink) -> None:
+def test_silence_after_an_invitation_is_no_response(link: FakeLink) -> None:
     world = world_of(link, "exercises")
     do(world, "welcome everyone")
     do(world, "show movement")

@@ -1,4 +1,4 @@
-"""What a drive has shown of what is wrong is kept as long as it matters."""
+"""Evidence of a fault from a drive is kept as long as it matters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tangy_profiles.health import Fact, Reading
 
 
 class Navigator:
-    """Says what it is told to say."""
+    """A navigator with given facts."""
 
     def __init__(self) -> None:
         self.told: dict[str, Fact] = {
@@ -28,7 +28,7 @@ class Navigator:
         )
 
 
-def test_that_it_was_lost_is_kept_until_it_has_looked_round() -> None:
+def test_a_lost_pose_is_remembered_until_the_robot_looks_round() -> None:
     navigator, now = Navigator(), [0.0]
     evidence = DriveMonitor(cast(NavigatorProtocol, navigator), lambda: now[0])
     navigator.told |= {"fit": 0.7, "spread": 1.5}
@@ -45,7 +45,7 @@ def test_that_it_was_lost_is_kept_until_it_has_looked_round() -> None:
     assert evidence.base(Reading("base")).facts["slip"] == 0.0
 
 
-def test_where_wheels_slipped_that_is_why_it_is_lost() -> None:
+def test_wheel_slip_is_remembered_as_the_cause_of_a_lost_pose() -> None:
     navigator, now = Navigator(), [0.0]
     evidence = DriveMonitor(cast(NavigatorProtocol, navigator), lambda: now[0])
     navigator.told |= {"slip": 0.8, "fit": 0.7, "spread": 1.5}
@@ -58,7 +58,7 @@ def test_where_wheels_slipped_that_is_why_it_is_lost() -> None:
     assert evidence.base(Reading("base")).facts["slip"] == 0.0
 
 
-def test_a_drive_is_told_of_for_a_moment() -> None:
+def test_a_stall_is_reported_for_a_limited_time() -> None:
     navigator, now = Navigator(), [0.0]
     evidence = DriveMonitor(cast(NavigatorProtocol, navigator), lambda: now[0])
     navigator.told["still"] = 2.0

@@ -80,7 +80,7 @@ class TestServos:
 
 
 class TestArms:
-    async def test_they_hang_until_the_first_posture_and_then_go_there_together(self) -> None:
+    async def test_arms_are_limp_until_the_first_posture_and_then_move_together(self) -> None:
         async with armed() as (bus, arms, _):
             satisfied: Arms = arms
             assert not any(servo.torque for servo in bus.servos.values())
@@ -94,7 +94,7 @@ class TestArms:
             assert arms.positions["arm/shoulder"] == pytest.approx(math.radians(45), abs=0.01)
             assert arms.reading().facts == {"hardware_error": False}
 
-    async def test_torque_comes_without_a_jerk_and_goes_with_the_end(self) -> None:
+    async def test_torque_switches_on_smoothly_and_off_at_the_end(self) -> None:
         async with armed() as (bus, arms, _):
             bus.servos[1].position = 1234
             await soon(arms.pose({"head": (0, 0)}, 0.2))
@@ -106,7 +106,7 @@ class TestArms:
             await arms.close()
             assert not any(servo.torque for servo in bus.servos.values())
 
-    async def test_a_servo_s_error_is_told_ends_what_is_done_and_a_restart_clears_it(self) -> None:
+    async def test_a_servo_error_ends_the_movement_until_a_restart(self) -> None:
         async with armed() as (bus, arms, _):
             bus.servos[2].sticks = True
             posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
@@ -125,14 +125,14 @@ class TestArms:
             assert bus.servos[2].restarts == 1
             await soon(arms.pose({"arm": (45, 30)}, 0.2))
 
-    async def test_a_servo_that_has_an_error_before_it_moves_is_told_as_well(self) -> None:
+    async def test_a_servo_error_before_the_movement_is_reported(self) -> None:
         async with armed() as (bus, arms, _):
             bus.servos[2].error = 1 << 2
             with pytest.raises(DeviceError, match="the servo of arm/elbow reports overheating"):
                 await soon(arms.pose({"arm": (45, 30)}, 0.2))
             assert arms.reading().state == ERROR
 
-    async def test_told_to_hold_they_stay_where_they_are_and_keep_their_torque(self) -> None:
+    async def test_hold_stops_the_arms_in_place_with_torque(self) -> None:
         async with armed() as (bus, arms, _):
             bus.servos[2].sticks = True
             posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
@@ -152,7 +152,7 @@ class TestArms:
             await arms.hold()
             assert not any(servo.torque for servo in bus.servos.values() if servo.there)
 
-    async def test_they_hold_as_well_after_one_of_them_was_silent(self) -> None:
+    async def test_hold_works_after_a_servo_was_silent(self) -> None:
         async with armed() as (bus, arms, _):
             bus.servos[2].sticks = True
             posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
@@ -170,7 +170,7 @@ class TestArms:
             await soon(arms.pose({"head": (5, 0)}, 0.2))
             assert bus.servos[7].torque
 
-    async def test_what_was_to_hold_while_the_port_was_gone_does_when_it_is_back(
+    async def test_hold_takes_effect_when_a_lost_port_returns(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(dynamixel, "AGAIN_SECONDS", 0.3)
@@ -187,7 +187,7 @@ class TestArms:
                 await soon(posing)
             await until(lambda: bus.servos[2].goal == 1500)
 
-    async def test_a_joint_that_sticks_is_named_in_time(self) -> None:
+    async def test_a_stuck_joint_is_named_in_time(self) -> None:
         async with armed() as (bus, arms, now):
             bus.servos[2].sticks = True
             posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 1))
@@ -197,7 +197,7 @@ class TestArms:
             with pytest.raises(DeviceError, match="arm/elbow is not there in time"):
                 await soon(posing)
 
-    async def test_a_servo_that_is_silent_is_named_and_the_data_is_old(self) -> None:
+    async def test_a_silent_servo_is_named_and_makes_the_data_stale(self) -> None:
         async with armed() as (bus, arms, now):
             bus.servos[2].there = False
             now.time += 1
@@ -224,12 +224,12 @@ class TestArms:
     @pytest.mark.parametrize(
         "angles", [{"tail": (1,)}, {"arm": (1,)}, {"head": (math.nan, 0)}, {"arm": (0, 120)}]
     )
-    async def test_what_the_body_cannot_do_is_refused(self, angles: Any) -> None:
+    async def test_angles_beyond_the_limits_of_the_arms_are_refused(self, angles: Any) -> None:
         async with armed() as (_, arms, _now):
             with pytest.raises(DeviceError, match="cannot"):
                 await arms.pose(angles, 0.2)
 
-    async def test_a_port_that_is_not_there_yet_is_no_error_at_the_start(self) -> None:
+    async def test_a_missing_port_is_no_error_at_the_start(self) -> None:
         arms = DynamixelArms("/dev/no-such-port", LIMBS, servos_of(SERVOS))
         await arms.start()
         await asyncio.sleep(0.02)
@@ -237,7 +237,7 @@ class TestArms:
         assert arms.why == "arms: /dev/no-such-port is not there."
         await arms.close()
 
-    async def test_without_the_package_it_says_how_to_get_it(
+    async def test_a_missing_package_is_reported_with_the_install_command(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setitem(sys.modules, "dynamixel_sdk", None)

@@ -1,4 +1,4 @@
-"""Robots that find their way themselves: goals go there, and come back when it must not drive."""
+"""Robots with a navigation of their own: goals are sent, and cancelled if driving is unsafe."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ async def living(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Living]:
         await server.close()
 
 
-async def test_it_goes_where_it_is_told_and_says_where_it_is(
+async def test_a_goal_is_driven_and_the_pose_reported(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -105,7 +105,7 @@ async def test_it_goes_where_it_is_told_and_says_where_it_is(
         assert not one.base.cancelled and one.parts.told == []  # nobody drives the base but it
 
 
-async def test_a_robot_that_must_not_drive_hands_nothing_over(
+async def test_no_goal_is_sent_while_the_robot_must_not_drive(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -138,7 +138,7 @@ async def go_without_a_way(one: Living) -> None:
     assert one.facts("navigator") == {"path": "none"}
 
 
-async def test_where_it_finds_no_way_somebody_is_given_the_time_to_clear_it(
+async def test_a_blocked_path_is_retried_after_time_to_clear_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 0.5)
@@ -151,7 +151,7 @@ async def test_where_it_finds_no_way_somebody_is_given_the_time_to_clear_it(
         assert one.facts("navigator") == {"path": "clear"}
 
 
-async def test_a_way_that_was_blocked_before_a_stop_may_still_be_blocked_after_it(
+async def test_a_stop_does_not_shorten_the_time_to_clear_a_path(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 1e9)
@@ -166,7 +166,7 @@ async def test_a_way_that_was_blocked_before_a_stop_may_still_be_blocked_after_i
         assert one.facts("navigator") == {"path": "clear"}
 
 
-async def test_a_goal_that_is_refused_is_no_blocked_way(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_refused_goal_is_no_blocked_path(monkeypatch: pytest.MonkeyPatch) -> None:
     async with living(monkeypatch) as one:
         going = asyncio.create_task(one.robot.go(GOAL))
         await until(lambda: one.base.goals)
@@ -175,7 +175,7 @@ async def test_a_goal_that_is_refused_is_no_blocked_way(monkeypatch: pytest.Monk
         assert one.facts("navigator") == {"path": "clear"}
 
 
-async def test_a_stop_stops_the_base_until_the_goal_is_known_to_be_over(
+async def test_a_stop_holds_the_base_until_the_goal_has_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -197,7 +197,7 @@ async def test_a_stop_stops_the_base_until_the_goal_is_known_to_be_over(
         assert len(one.parts.told) == told
 
 
-async def test_what_it_drives_by_falls_silent_and_it_stands_until_it_speaks_again(
+async def test_a_drive_pauses_while_a_sensor_is_silent(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -212,7 +212,7 @@ async def test_what_it_drives_by_falls_silent_and_it_stands_until_it_speaks_agai
         assert await soon(going) is True
 
 
-async def test_a_device_that_stays_silent_ends_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_drive_ends_if_a_sensor_stays_silent(monkeypatch: pytest.MonkeyPatch) -> None:
     async with living(monkeypatch) as one:
         going = asyncio.create_task(one.robot.go(GOAL))
         await until(lambda: one.base.goals)
@@ -224,7 +224,7 @@ async def test_a_device_that_stays_silent_ends_the_drive(monkeypatch: pytest.Mon
         assert len(one.base.goals) == 1
 
 
-async def test_a_navigation_that_falls_silent_ends_the_drive(
+async def test_a_silent_navigation_ends_the_drive(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -237,7 +237,7 @@ async def test_a_navigation_that_falls_silent_ends_the_drive(
         assert one.base.cancelled and "stop" in one.parts.told
 
 
-async def test_a_drive_that_is_called_off_is_called_off_there(
+async def test_a_cancelled_drive_cancels_the_goal_at_the_robot(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -254,7 +254,7 @@ async def test_a_drive_that_is_called_off_is_called_off_there(
         await until(lambda: Twist(0.1, 0.0) in one.parts.told)
 
 
-async def test_it_may_be_wide_of_its_place_and_turns_to_find_it(
+async def test_a_robot_with_an_uncertain_pose_turns_to_localise(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async with living(monkeypatch) as one:
@@ -270,7 +270,7 @@ async def test_it_may_be_wide_of_its_place_and_turns_to_find_it(
         assert not one.base.goals
 
 
-async def test_without_a_link_the_drive_is_over() -> None:
+async def test_a_drive_without_a_link_fails() -> None:
     async with living_silent() as (way, _):
         way.go(GOAL)
         way.tick(Odometry(START, STILL), None, 0.05)
@@ -290,7 +290,7 @@ async def living_silent() -> AsyncIterator[tuple[ExternalNavigator, Rosbridge]]:
         await bridge.close()
 
 
-async def test_one_that_says_nothing_is_stale_and_knows_no_place() -> None:
+async def test_a_silent_navigation_is_stale_and_has_no_pose() -> None:
     async with living_silent() as (way, _):
         place, navigator = way.readings()
         assert (place.state, navigator.state, way.estimate) == (STALE, STALE, None)
@@ -317,19 +317,19 @@ class TestProfiles:
         wired = assemble(RobotSetup(str(path), "bingo", ("user1",)))
         assert isinstance(wired.robot.navigator, ExternalNavigator)
 
-    def test_on_a_bench_that_has_another_base_it_is_left_out(self, tmp_path: Path) -> None:
+    def test_a_bench_with_another_base_leaves_the_navigation_out(self, tmp_path: Path) -> None:
         path = robot_file(tmp_path, "")
         base = {"base": {"kind": "rosbridge", "at": "ws://127.0.0.1:10"}}
         wired = assemble(RobotSetup(str(path), "bingo", ("user1",), drivers=base))
         assert isinstance(wired.robot.navigator, Navigator)
 
     @pytest.mark.parametrize("origin", ["1, 2", "a, b, c", "1, 2, nan", "1, 2, 3, 4"])
-    def test_a_place_of_the_map_that_is_none_is_refused(self, tmp_path: Path, origin: str) -> None:
+    def test_an_invalid_map_origin_is_refused(self, tmp_path: Path, origin: str) -> None:
         path = robot_file(tmp_path, f', origin = "{origin}"')
         with pytest.raises(DeviceError, match=r"navigator \(rosbridge\): origin must be X, Y"):
             assemble(RobotSetup(str(path), "bingo", ("user1",)))
 
-    async def test_a_robot_without_one_misses_nothing(self, tmp_path: Path) -> None:
+    async def test_a_robot_without_its_own_navigation_lacks_nothing(self, tmp_path: Path) -> None:
         path = robot_file(tmp_path, "")
         text = path.read_text(encoding="utf-8")
         found = await try_robot(load_robot(str(path)), load_activity("bingo"), {}, 0.1)

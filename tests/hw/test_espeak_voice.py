@@ -1,4 +1,4 @@
-"""The robot's voice says what it is told, or says that nobody heard it."""
+"""The robot's voice speaks each line, or reports that it was not heard."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ async def scene(tmp_path: Path) -> AsyncIterator[Scene]:
         await voice.close()
 
 
-async def test_saying_ends_when_it_was_heard(scene: Scene) -> None:
+async def test_say_returns_after_the_sound_has_played(scene: Scene) -> None:
     voice = await scene.voice()
     saying = asyncio.create_task(voice.say("The next number is B-12."))
     async with asyncio.timeout(PATIENCE):
@@ -86,7 +86,7 @@ async def test_a_sound_is_played_to_its_end_with_the_microphone_shut(
     assert not scene.speaker.heard
 
 
-async def test_a_sound_that_is_gone_is_a_warning_until_the_next_line(
+async def test_a_missing_sound_file_is_a_warning_until_the_next_line(
     scene: Scene, tmp_path: Path
 ) -> None:
     voice = await scene.voice(Broken())
@@ -96,7 +96,7 @@ async def test_a_sound_that_is_gone_is_a_warning_until_the_next_line(
 
 
 @pytest.mark.parametrize("by", ["hush", "cancel", "close"])
-async def test_it_is_cut_at_once(scene: Scene, by: str) -> None:
+async def test_speech_is_cut_at_once(scene: Scene, by: str) -> None:
     voice = await scene.voice()
     saying = asyncio.create_task(voice.say("This goes on and on."))
     async with asyncio.timeout(PATIENCE):
@@ -132,7 +132,7 @@ class Broken:
         pass
 
 
-async def test_what_cannot_be_heard_is_an_error_until_it_is_started_anew(scene: Scene) -> None:
+async def test_a_silent_player_is_an_error_until_a_restart(scene: Scene) -> None:
     player = Broken()
     voice = await scene.voice(player)
     assert voice.reading().state == "OK"
@@ -147,7 +147,7 @@ async def test_what_cannot_be_heard_is_an_error_until_it_is_started_anew(scene: 
     assert (voice.reading().state, voice.why) == ("OK", "")
 
 
-async def test_a_line_that_cannot_be_made_is_a_warning_until_the_next(scene: Scene) -> None:
+async def test_a_failed_synthesis_is_a_warning_until_the_next_line(scene: Scene) -> None:
     player = Broken()
     player.works = True
     voice = await scene.voice(player)
@@ -158,7 +158,7 @@ async def test_a_line_that_cannot_be_made_is_a_warning_until_the_next(scene: Sce
     assert (voice.reading().state, voice.why) == ("OK", "")
 
 
-async def test_without_a_synthesiser_it_says_what_is_missing(tmp_path: Path) -> None:
+async def test_a_missing_synthesiser_is_named(tmp_path: Path) -> None:
     voice = SpokenVoice(player=NullPlayer(), folder=tmp_path, which=lambda name: None)
     assert voice.reading().state == "ERROR"
     await voice.start()
@@ -169,7 +169,7 @@ async def test_without_a_synthesiser_it_says_what_is_missing(tmp_path: Path) -> 
     await voice.close()
 
 
-async def test_a_player_that_plays_nothing_is_found_out_before_the_first_line(
+async def test_a_broken_player_is_noticed_before_the_first_line(
     scene: Scene, tmp_path: Path
 ) -> None:
     player = program(tmp_path / "bin" / "aplay", "echo 'no card' >&2; exit 1")
@@ -186,7 +186,7 @@ async def test_a_player_that_plays_nothing_is_found_out_before_the_first_line(
     await voice.close()
 
 
-async def test_a_real_player_is_waited_for(scene: Scene, tmp_path: Path) -> None:
+async def test_say_waits_for_a_real_player(scene: Scene, tmp_path: Path) -> None:
     player = program(tmp_path / "bin" / "aplay", f"echo played >> {tmp_path}/played")
     voice = await scene.voice(ProgramPlayer([[str(player)]]))
     async with asyncio.timeout(PATIENCE):

@@ -1,4 +1,4 @@
-"""Faces: found, judged, described, compared, voted over; and what is kept of them, with consent."""
+"""Faces: found, judged, described, compared and voted over; and stored only with consent."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class TestSeeing:
         (seen,) = HaarReader().read(frame)
         assert seen.problem == "" and 700 < seen.box[0] < 800 and 200 < seen.box[1] < 300
 
-    def test_where_no_face_is_none_is_found(self) -> None:
+    def test_no_face_is_found_in_an_empty_picture(self) -> None:
         assert HaarReader().read(np.full((300, 300, 3), 128, np.uint8)) == []
         assert one_face([]) == ("no face is seen", None)
 
@@ -76,9 +76,7 @@ class TestSeeing:
             ({"blur": 5.0}, "blurred"),
         ],
     )
-    def test_what_is_seen_badly_is_refused_with_the_reason(
-        self, drawn: dict[str, Any], says: str
-    ) -> None:
+    def test_a_poor_face_is_refused_with_the_reason(self, drawn: dict[str, Any], says: str) -> None:
         good, bad = drawn_face(3, 1), drawn_face(3, 1, **drawn)
         grey: Any = cv2.cvtColor(good, cv2.COLOR_BGR2GRAY)
         assert HaarReader().read(good)[0].problem == ""
@@ -90,7 +88,7 @@ class TestSeeing:
         assert found.eyes is not None
         assert says in judge(dim, found.box, align(dim, found.eyes)).problem()
 
-    def test_light_hardly_changes_what_a_face_is_like(self) -> None:
+    def test_light_hardly_changes_the_descriptor_of_a_face(self) -> None:
         face = np.random.default_rng(1).integers(60, 200, (104, 80)).astype(np.uint8)
         face = cv2.GaussianBlur(face, (0, 0), 2.0)  # type: ignore[assignment]
         dim = (face * 0.6).astype(np.uint8)
@@ -100,23 +98,25 @@ class TestSeeing:
 
 class TestComparing:
     @given(st.integers(1, 6), st.integers(0, 1000))
-    def test_somebody_is_known_and_a_stranger_is_not(self, people: int, seed: int) -> None:
+    def test_an_enrolled_person_is_recognised_and_a_stranger_is_not(
+        self, people: int, seed: int
+    ) -> None:
         gallery = Gallery({f"p{n}": among(n, seed) for n in range(people)})
         for n in range(people):
             assert gallery.compare(among(n, seed + 1, 1, near=0.2)[0]).person == f"p{n}"
         stranger = gallery.compare(among(99, seed, 1)[0])
         assert stranger.person is None and stranger.nearest is not None
 
-    def test_two_who_are_as_like_are_not_told_apart(self) -> None:
+    def test_no_person_is_chosen_between_two_similar_scores(self) -> None:
         assert decide({"a": 1.0, "b": 1.0 - AHEAD / 2}).person is None
         assert decide({"a": 1.0, "b": 1.0 - 2 * AHEAD}).person == "a"
         assert decide({"a": ENOUGH - 0.01}).person is None
         assert decide({}) == FaceMatch(None, None, 0.0)
 
-    def test_nobody_is_known_where_nobody_is_enrolled(self) -> None:
+    def test_an_empty_gallery_recognises_nobody(self) -> None:
         assert Gallery({}).compare(rows(1)[0]).person is None
 
-    def test_the_very_same_pictures_break_nothing(self) -> None:
+    def test_identical_pictures_cause_no_error(self) -> None:
         same = np.repeat(among(1, 1, 1), 3, axis=0)
         gallery = Gallery({"a": same, "b": same})
         assert gallery.compare(same[0]).person is None  # it may be either
@@ -135,7 +135,7 @@ class TestComparing:
 
 
 class _Reader:
-    """A reader that sees what it is told to."""
+    """A reader that returns given faces."""
 
     kind = "made"
 
@@ -147,21 +147,21 @@ class _Reader:
 
 
 class TestEnrolling:
-    def test_pictures_that_show_the_same_count_once(self) -> None:
+    def test_repeated_pictures_count_once(self) -> None:
         one, two = among(1, 1, 2)
         enrolment = Enrolment(_Reader(one, one, two))
         told = [enrolment.offer(np.zeros(1, np.uint8)) for _ in range(3)]
         assert told[0] == told[2] == "" and "move the head" in told[1]
         assert len(enrolment) == 2
 
-    def test_somebody_else_among_the_pictures_is_left_out(self) -> None:
+    def test_pictures_of_another_person_are_dropped(self) -> None:
         pictures = [*among(1, 1, 5), among(2, 1, 1)[0], *among(1, 2, 4)]
         enrolment = Enrolment(_Reader(*pictures))
         for _ in pictures:
             enrolment.offer(np.zeros(1, np.uint8))
         assert enrolment.drop_odd() == [5] and len(enrolment) == 9
 
-    def test_of_two_faces_the_one_that_is_meant_must_be_clear(self) -> None:
+    def test_the_nearer_of_two_faces_must_be_clear(self) -> None:
         vector = rows(1)[0]
         near, far = (
             FaceReading((0, 0, 100, 100), "", None, vector),
@@ -182,7 +182,7 @@ class TestKeeping:
             max_size=25,
         )
     )
-    def test_of_nobody_without_standing_consent_anything_lies_there(
+    def test_face_data_is_stored_only_with_standing_consent(
         self, tmp_path_factory: pytest.TempPathFactory, steps: list[tuple[str, str]]
     ) -> None:
         agreed: set[str] = set()
@@ -210,7 +210,7 @@ class TestKeeping:
                 files = list((store.folder / FOLDER).glob("*")) if kept else []
                 assert len(files) == len(kept)
 
-    def test_features_come_back_as_they_were(self, store: Store) -> None:
+    def test_stored_features_are_read_back_unchanged(self, store: Store) -> None:
         consent(store, "user1", True, "asked")
         keep_face(store, "user1", "hoglbp1", rows(1))
         assert np.allclose(read_face(store, "user1", "hoglbp1"), rows(1), atol=1e-3)
@@ -218,7 +218,7 @@ class TestKeeping:
         (path,) = (store.folder / FOLDER).iterdir()
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
 
-    def test_a_broken_file_is_one_sentence(self, store: Store) -> None:
+    def test_a_damaged_file_is_reported_in_one_sentence(self, store: Store) -> None:
         consent(store, "user1", True, "asked")
         keep_face(store, "user1", "hoglbp1", rows(1))
         (path,) = (store.folder / FOLDER).iterdir()
@@ -239,7 +239,7 @@ class TestKeeping:
         path.write_bytes(b"")
         assert forget_face(store, "user1") and not path.exists()
 
-    def test_nothing_is_written_through_a_link(self, store: Store, tmp_path: Path) -> None:
+    def test_nothing_is_written_through_a_symbolic_link(self, store: Store, tmp_path: Path) -> None:
         (tmp_path / "elsewhere").mkdir()
         (store.folder / FOLDER).symlink_to(tmp_path / "elsewhere")
         consent(store, "user1", True, "asked")
@@ -247,7 +247,7 @@ class TestKeeping:
             keep_face(store, "user1", "hoglbp1", rows(1))
         assert list((tmp_path / "elsewhere").iterdir()) == []
 
-    def test_a_folder_that_cannot_be_written_is_told(self, store: Store) -> None:
+    def test_an_unwritable_folder_is_reported(self, store: Store) -> None:
         consent(store, "user1", True, "asked")
         (store.folder / FOLDER).write_text("a file")
         with pytest.raises(FaceError, match="cannot be written"):
@@ -261,7 +261,7 @@ def _like(person: np.ndarray[Any, Any], count: int, chance: np.random.Generator)
 
 
 @pytest.mark.parametrize(("people", "several"), [(1, False), (2, True), (3, True)])
-def test_pictures_of_several_people_are_told_from_those_of_one(people: int, several: bool) -> None:
+def test_pictures_of_several_people_are_noticed(people: int, several: bool) -> None:
     chance = np.random.default_rng(people)
     enrolment = Enrolment(HaarReader())
     for _ in range(people):

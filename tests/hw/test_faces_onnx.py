@@ -51,7 +51,7 @@ def robot_file(folder: Path, finder: str, recogniser: str) -> Path:
     return path
 
 
-def test_faces_are_found_and_told_apart(models: FaceModels) -> None:
+def test_faces_are_found_and_distinguished(models: FaceModels) -> None:
     reader = open_reader(models)
     (seen,) = reader.read(face(1, 1))
     assert seen.problem == "" and seen.vector is not None
@@ -62,19 +62,19 @@ def test_faces_are_found_and_told_apart(models: FaceModels) -> None:
     assert reader.read(np.full((240, 400, 3), 90, np.uint8)) == []
 
 
-def test_a_large_picture_is_brought_down_and_boxes_are_its_own(models: FaceModels) -> None:
+def test_a_large_picture_is_scaled_down_and_its_boxes_scaled_back(models: FaceModels) -> None:
     image = np.full((1536, 2560, 3), 90, np.uint8)
     image[192:224, 320:352] = (0, 255, 0)  # 16 pixels, as it is looked at
     (seen,) = open_reader(models).read(image)
     assert seen.box == pytest.approx((257, 129, 158, 158), abs=4)
 
 
-def test_without_files_the_usual_reader_is_used() -> None:
+def test_the_haar_reader_is_the_default() -> None:
     assert load_robot().faces is None
     assert isinstance(open_reader(None), HaarReader)
 
 
-def test_files_that_are_missing_or_broken_are_refused(models: FaceModels, tmp_path: Path) -> None:
+def test_missing_or_broken_model_files_are_refused(models: FaceModels, tmp_path: Path) -> None:
     empty, text = tmp_path / "empty.onnx", tmp_path / "text.onnx"
     empty.write_bytes(b"")
     text.write_text("this is no model")
@@ -87,7 +87,7 @@ def test_files_that_are_missing_or_broken_are_refused(models: FaceModels, tmp_pa
             assert "\n" not in str(refused.value)
 
 
-def test_a_model_that_does_something_else_is_refused(models: FaceModels) -> None:
+def test_a_model_with_another_interface_is_refused(models: FaceModels) -> None:
     with pytest.raises(FaceError, match="YuNet"):  # which finds none, or breaks, or loads not
         OnnxReader(models.recogniser, models.finder).read(face(1, 1))
 

@@ -1,4 +1,4 @@
-"""No file that is handed over hangs Tangy, fills its memory, or starts another program."""
+"""No given file hangs Tangy, fills its memory, or starts another program."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_a_pipe_or_a_device_is_refused_in_a_sentence(
         read(made(tmp_path / "given"))
 
 
-def test_how_much_of_a_pipe_is_cut_off_is_not_asked(tmp_path: Path) -> None:
+def test_a_pipe_is_not_checked_for_truncation(tmp_path: Path) -> None:
     assert seconds_cut_off(pipe_at(tmp_path / "pipe.wav")) == 0
 
 
@@ -94,7 +94,7 @@ def test_a_pipe_in_a_folder_of_pictures_is_left_out(tmp_path: Path) -> None:
 
 class TestPictures:
     @pytest.mark.parametrize("read", [read_picture, of_map])
-    def test_a_picture_that_is_a_program_starts_none(
+    def test_a_postscript_picture_starts_no_program(
         self, tmp_path: Path, programs: Callable[[], list[str]], read: Callable[[Path], Any]
     ) -> None:
         (tmp_path / "given.pgm").write_bytes(EPS)
@@ -103,7 +103,7 @@ class TestPictures:
         assert programs() == []
 
     @pytest.mark.parametrize("read", [read_picture, of_map])
-    def test_a_small_file_of_very_many_pixels_is_refused_before_they_are_unpacked(
+    def test_a_decompression_bomb_is_refused_before_it_is_unpacked(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, read: Callable[[Path], Any]
     ) -> None:
         def chunk(kind: bytes, content: bytes) -> bytes:
@@ -120,7 +120,7 @@ class TestPictures:
 
 
 class TestLogs:
-    def test_a_packed_log_that_unpacks_to_very_much_is_refused(
+    def test_an_oversized_packed_log_is_refused(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(scan_log, "MOST_SCANS", 1000)
@@ -130,7 +130,7 @@ class TestLogs:
         with pytest.raises(LogError, match="line 1001: there are more scans than a map needs"):
             read_log(tmp_path / "log.gz")
 
-    def test_scans_of_very_many_readings_are_refused(
+    def test_scans_with_too_many_readings_are_refused(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(scan_log, "MOST_READINGS", 3)
@@ -138,7 +138,7 @@ class TestLogs:
         with pytest.raises(LogError, match="line 2: there are more scans"):
             read_log(tmp_path / "log")
 
-    def test_a_line_without_an_end_is_not_kept(
+    def test_an_endless_line_is_refused(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(scan_log, "LONGEST_LINE", 1000)
@@ -147,7 +147,7 @@ class TestLogs:
             read_log(tmp_path / "log.gz")
 
     @pytest.mark.parametrize("packed", [False, True])
-    def test_a_log_that_is_one_is_read(self, tmp_path: Path, packed: bool) -> None:
+    def test_a_valid_log_is_read(self, tmp_path: Path, packed: bool) -> None:
         content = (SCAN * 3).encode()
         (tmp_path / "log").write_bytes(gzip.compress(content) if packed else content)
         assert len(read_log(tmp_path / "log")) == 3

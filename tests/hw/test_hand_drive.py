@@ -1,4 +1,4 @@
-"""Driving by hand, and that nothing is ever driven faster than the robot may."""
+"""Driving by hand, and the maximum speed that no command exceeds."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def drive(twist: Twist, around: Scan | None) -> tuple[Twist | None, str]:
 
 
 class TestHandDrive:
-    def test_a_command_holds_for_a_moment_and_then_it_stands(self) -> None:
+    def test_a_command_expires_and_the_robot_stops(self) -> None:
         hand = HandDrive(LIMITS)
         assert hand.command(scan(), 0.0) is None
         hand.tell(Twist(0.3, 0.0), 1.0)
@@ -53,7 +53,7 @@ class TestHandDrive:
         assert hand.command(scan(), 1.0 + HOLDS_SECONDS) == STILL
         assert hand.command(scan(), 2.0) is None
 
-    def test_it_says_what_it_does_about_a_command(self) -> None:
+    def test_each_command_is_reported_as_free_slowed_or_stopped(self) -> None:
         assert drive(Twist(0.3, 0.0), scan(front=2.9)) == (Twist(0.3, 0.0), "")
         slow, held = drive(Twist(0.5, 0.0), scan(front=0.8))
         assert slow is not None and 0 < slow.forward < 0.3 and held == "slow"
@@ -61,13 +61,13 @@ class TestHandDrive:
         assert drive(Twist(-0.1, 0.0), scan(front=0.3)) == (Twist(-0.1, 0.0), "")
         assert drive(Twist(0.0, 0.3), scan(front=0.3)) == (Twist(0.0, 0.3), "")
 
-    def test_it_stands_before_what_only_the_map_knows_of(self) -> None:
+    def test_the_robot_stops_before_obstacles_known_only_from_the_map(self) -> None:
         hand = HandDrive(LIMITS)
         hand.tell(Twist(0.3, 0.0), 0.0)
         assert hand.command(scan(), 0.1, np.array([[0.35, 0.1]])) == STILL
 
     @pytest.mark.parametrize("forward", [0.5, -0.5, 9.0])
-    def test_staff_who_override_it_crawl_past_what_is_close_while_they_hold_the_key(
+    def test_an_override_crawls_past_close_objects_while_the_key_is_held(
         self, forward: float
     ) -> None:
         hand = HandDrive(LIMITS)
@@ -79,11 +79,11 @@ class TestHandDrive:
         hand.tell(Twist(forward, 0.0), 1.0)
         assert hand.command(scan(front=0.4, left=0.4), 1.1) != crawl
 
-    def test_without_a_scan_it_stands(self) -> None:
+    def test_the_robot_stops_without_a_scan(self) -> None:
         assert drive(Twist(0.3, 0.0), None) == (STILL, "stands")
         assert drive(Twist(0.0, 0.3), None) == (STILL, "stands")
 
-    async def test_the_robot_drives_by_the_newest_scan_and_not_at_all_by_an_old_one(self) -> None:
+    async def test_the_robot_uses_the_newest_scan_and_stops_for_an_old_one(self) -> None:
         async with spoken() as one:
             laser = one.parts.laser
             laser.scan = Stamped(scan(), 0.0, 1)
@@ -157,7 +157,7 @@ class TestClamp:
             assert clamped == STILL
 
     @given(TWISTS)
-    async def test_the_wheels_are_told_nothing_faster(self, twist: Twist) -> None:
+    async def test_the_wheels_get_no_command_above_the_maximum_speed(self, twist: Twist) -> None:
         parts = ToldBody()
         wheels = Wheels(parts.base, LIMITS)
         wheels.send(twist)
@@ -169,7 +169,7 @@ class TestClamp:
 
     @pytest.mark.slow
     @given(TWISTS, TWISTS, st.sampled_from(["line", "hand", "navigator", "both"]))
-    async def test_nothing_above_the_profile_s_speed_reaches_the_base_whoever_asks(
+    async def test_no_source_of_commands_exceeds_the_maximum_speed(
         self, one: Twist, other: Twist, way: str
     ) -> None:
         process = Spoken()

@@ -1,4 +1,4 @@
-"""Scans and odometry that a network delays: each is taken for what was true at its own time."""
+"""Scans and odometry that a network delays: each counts for the time of its measurement."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ AHEAD = 1_000.0  # s by which the device's clock is ahead
 
 
 class TestSourceClock:
-    def test_a_message_that_was_held_up_is_as_old_as_it_is(self) -> None:
+    def test_a_delayed_message_keeps_its_true_age(self) -> None:
         clock, chance = SourceClock(), Random(1)
         for number in range(round(20 * WINDOW)):  # longer than a window
             sent, late = number * 0.1, 0.01 + (chance.random() < 0.2) * chance.random()
             measured = clock.measured(sent + AHEAD, sent + late)
             assert measured == pytest.approx(sent + 0.01) or number == 0
 
-    def test_a_clock_that_runs_slower_is_followed(self) -> None:
+    def test_a_slower_source_clock_is_tracked(self) -> None:
         clock = SourceClock()
         for number in range(6_000):
             sent = number * 0.1
@@ -36,31 +36,31 @@ class TestSourceClock:
             assert abs(measured - sent) <= (2 * WINDOW + 0.2) * 1e-4
 
     @pytest.mark.parametrize("by", [-10 * JUMP, 10 * JUMP])
-    def test_a_clock_that_was_set_is_believed_at_once(self, by: float) -> None:
+    def test_a_reset_source_clock_is_followed_at_once(self, by: float) -> None:
         clock = SourceClock()
         clock.measured(AHEAD, 0.0)
         assert clock.measured(AHEAD + by + 0.1, 0.1) == pytest.approx(0.1)
 
     @pytest.mark.parametrize("digits", [0, -3])
-    def test_stamps_that_repeat_tell_nothing(self, digits: int) -> None:
+    def test_repeated_stamps_give_no_time(self, digits: int) -> None:
         clock = SourceClock()
         told = [clock.measured(round(AHEAD + 0.1 * n, digits), 0.1 * n) for n in range(100)]
         assert not any(told[10:])
 
-    def test_stamps_are_believed_again_some_time_after_one_that_came_twice(self) -> None:
+    def test_stamps_are_trusted_again_some_time_after_a_repeat(self) -> None:
         clock = SourceClock()
         told = [clock.measured(AHEAD + 0.1 * (n - (n == 5)), 0.1 * n) for n in range(500)]
         doubted = [n for n, measured in enumerate(told) if measured is None]
         assert doubted[0] == 5 and doubted == list(range(5, doubted[-1] + 1))
         assert doubted[-1] == pytest.approx(5 + WINDOW / 0.1, abs=1)
 
-    def test_a_clock_of_another_speed_tells_nothing_after_its_second_jump(self) -> None:
+    def test_a_clock_of_another_speed_is_ignored_after_its_second_jump(self) -> None:
         clock = SourceClock()
         told = [clock.measured(0.05 * n, 0.1 * n) for n in range(600)]
         assert not any(told[round(5 * JUMP / 0.1) :])
 
 
-def test_a_value_knows_when_it_was_measured_if_its_source_says_so() -> None:
+def test_a_value_carries_the_time_stamp_of_its_source() -> None:
     now = [5.0]
     newest: LatestValue[str] = LatestValue(lambda: now[0])
     newest.take("no stamp")
@@ -73,7 +73,7 @@ def test_a_value_knows_when_it_was_measured_if_its_source_says_so() -> None:
 
 
 @pytest.mark.parametrize("ros", [1, 2])
-def test_a_header_without_a_time_says_nothing(ros: int) -> None:
+def test_a_header_without_a_stamp_gives_no_time(ros: int) -> None:
     assert stamp_of({"header": header("odom", ros)}) is None
     assert stamp_of({}) is None
     stamp = {"secs": 3, "nsecs": 500_000_000} if ros == 1 else {"sec": 3, "nanosec": 500_000_000}
@@ -87,7 +87,7 @@ class TestOdometryHistory:
             history.note(Stamped(Odometry(pose, twist), 99.0, number, time))
         return history
 
-    def test_a_pose_between_two_is_found_on_the_way(self) -> None:
+    def test_a_pose_between_two_samples_is_interpolated(self) -> None:
         history = self.known(
             (1.0, Pose(0.0, 0.0, 3.0), Twist(0.5, 1.0)),
             (1.2, Pose(0.0, 0.2, -3.0), Twist(0.5, 1.0)),
@@ -96,12 +96,12 @@ class TestOdometryHistory:
         assert abs(history.at(1.1).heading) == pytest.approx(pi, abs=1e-6)  # and not the long way
         assert history.at(0.5) == Pose(0.0, 0.0, 3.0)
 
-    def test_after_the_last_it_goes_on_as_fast_but_not_for_long(self) -> None:
+    def test_a_pose_after_the_last_sample_is_extrapolated_for_a_short_time(self) -> None:
         history = self.known((1.0, Pose(1.0, 2.0, 0.0), Twist(0.5, 0.0)))
         assert history.at(1.1).x == pytest.approx(1.05)
         assert history.at(9.0).x == pytest.approx(1.0 + 0.5 * AHEAD_SECONDS)
 
-    def test_a_clock_that_was_set_begins_anew(self) -> None:
+    def test_a_reset_clock_clears_the_odometry_history(self) -> None:
         still = Twist(0.0, 0.0)
         history = self.known((50.0, Pose(1.0, 1.0, 0.0), still), (1.0, Pose(3.0, 0.0, 0.0), still))
         assert history.at(1.0) == Pose(3.0, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""The robot that is there: what a stop does to all of its body, whatever fails of it."""
+"""The live robot: a stop reaches every device, even if one of them fails."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ async def living() -> AsyncIterator[tuple[LiveRobot, ToldBody]]:
         await robot.close()
 
 
-async def test_a_sound_is_played_after_what_is_said() -> None:
+async def test_a_sound_is_played_after_the_speech() -> None:
     async with living() as (robot, parts):
         doing = asyncio.create_task(robot.perform(text="Hello", sound=Path("bell.wav")))
         await until(lambda: "say" in parts.told)
@@ -64,7 +64,7 @@ async def test_a_sound_is_played_after_what_is_said() -> None:
 
 
 class TestStop:
-    async def test_it_stands_holds_its_arms_and_is_quiet_in_this_order(self) -> None:
+    async def test_a_stop_halts_the_base_then_the_arms_then_the_voice(self) -> None:
         async with living() as (robot, parts):
             doing = asyncio.create_task(robot.perform(text="Hello", posture=POSTURE))
             await until(lambda: {"say", "pose"} <= set(parts.told))
@@ -76,7 +76,7 @@ class TestStop:
             assert robot.hazard == "a hand was in the way"
 
     @pytest.mark.parametrize("broken", ["arms", "voice"])
-    async def test_what_fails_of_the_rest_keeps_nothing_from_being_stopped(
+    async def test_a_failing_device_does_not_keep_the_others_from_stopping(
         self, broken: str
     ) -> None:
         async with living() as (robot, parts):
@@ -85,7 +85,7 @@ class TestStop:
             assert parts.told == ["stop", "hold", "hush"]
             assert robot.stopped == "enough"
 
-    async def test_a_voice_that_hangs_holds_nobody_up(self) -> None:
+    async def test_a_hanging_voice_does_not_delay_a_stop(self) -> None:
         async with living() as (robot, parts):
             parts.voice.hangs = True
             began = monotonic()
@@ -93,7 +93,7 @@ class TestStop:
                 await soon(robot.stop("enough"))
             assert monotonic() - began < 1 and parts.told[:2] == ["stop", "hold"]
 
-    async def test_a_posture_that_was_about_to_be_taken_is_not(self) -> None:
+    async def test_a_stop_prevents_a_pending_posture(self) -> None:
         async with living() as (robot, parts):
             doing = asyncio.create_task(robot.perform(posture=POSTURE))
             stopping = asyncio.create_task(robot.stop("enough"))
@@ -102,7 +102,7 @@ class TestStop:
             await stopping
             assert parts.told[:3] == ["stop", "hold", "hush"] and "pose" not in parts.told
 
-    async def test_a_command_that_was_about_to_be_handed_over_never_is(self) -> None:
+    async def test_a_stop_prevents_a_pending_command(self) -> None:
         async with living() as (robot, parts):
             assert robot.hazard == ""
             robot.drive_by_hand(Twist(0.3, 0.0))
@@ -115,7 +115,7 @@ class TestStop:
 
 
 class TestOwnersOfStops:
-    async def test_it_moves_again_when_all_who_stopped_it_have_let_it_go(self) -> None:
+    async def test_the_robot_moves_again_after_every_owner_releases_its_stop(self) -> None:
         async with living() as (robot, _):
             await robot.stop("staff stopped it")
             await robot.stop("base-runaway", "fault")
@@ -124,7 +124,7 @@ class TestOwnersOfStops:
             robot.release("staff")
             assert robot.stopped == robot.hazard == ""
 
-    async def test_it_says_why_for_whoever_still_holds_it(self) -> None:
+    async def test_the_robot_shows_the_reason_of_the_remaining_stop(self) -> None:
         async with living() as (robot, _):
             await robot.stop("staff stopped it")
             await robot.stop("base-runaway", "fault")
@@ -136,7 +136,7 @@ class TestOwnersOfStops:
 
 
 class TestFailure:
-    async def test_it_stands_for_good_when_its_control_fails(self) -> None:
+    async def test_a_failed_control_loop_stops_the_robot_for_good(self) -> None:
         async with living() as (robot, parts):
             with patch.object(robot.navigator, "tick", side_effect=ZeroDivisionError):
                 await until(lambda: robot.failed)
@@ -152,7 +152,7 @@ class TestFailure:
 
 
 class TestLeftAlone:
-    async def test_it_holds_its_arms_and_is_quiet_after_a_while_and_it_is_no_stop(self) -> None:
+    async def test_an_abandoned_robot_falls_quiet_without_a_stop(self) -> None:
         with patch.object(robots, "HAZARD_SECONDS", 0.2):
             async with living() as (robot, parts):
                 left: list[str] = []
@@ -184,7 +184,7 @@ class TestSpin:
             (0.5, 0.6, True, False),
         ],
     )
-    async def test_it_has_found_its_place_when_it_believes_in_one(
+    async def test_a_spin_succeeds_when_the_pose_is_certain(
         self, fit: float, spread: float, settled: bool, found: bool
     ) -> None:
         estimate = Estimate(HERE, np.eye(3), spread, fit, 300, settled)
@@ -199,13 +199,13 @@ class TestSpin:
 
 
 class TestArms:
-    """What the arms do where somebody is within their reach."""
+    """Gestures while a person is within the reach of the arms."""
 
     @pytest.mark.parametrize(
         ("x", "posture", "moves"),
         [(0.6, "cheer", False), (1.2, "cheer", True), (0.6, "drive", True)],
     )
-    async def test_a_gesture_towards_somebody_near_is_left_out(
+    async def test_a_gesture_is_skipped_if_a_person_is_within_reach(
         self, x: float, posture: str, moves: bool, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         robot = load_robot()
@@ -225,7 +225,7 @@ class TestArms:
         doing.cancel()
 
 
-async def test_the_control_passes_the_odometry_of_the_scans_own_time() -> None:
+async def test_localisation_gets_the_odometry_of_the_scan_time() -> None:
     async with living() as (robot, parts):
         told: list[Pose | None] = []
         tick = robot.navigator.tick

@@ -1,4 +1,4 @@
-"""The real world: what a robot does about each behaviour, and what it makes of what it sees."""
+"""The live world: what the robot does for each behaviour, and how it reads its sensors."""
 
 from __future__ import annotations
 
@@ -81,9 +81,7 @@ def test_a_number_is_said_shown_and_called(world: LiveWorld, link: FakeLink) -> 
     assert shown["number"] == label and list(shown["before"]) == []
 
 
-def test_where_nothing_was_said_the_screen_shows_every_word(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_the_screen_shows_every_word_if_speech_fails(world: LiveWorld, link: FakeLink) -> None:
     link.speaks = False
     do(world, "greeting")
     texts = [what["picture"]["text"] for did, what in link.done if did == "perform"]
@@ -91,7 +89,7 @@ def test_where_nothing_was_said_the_screen_shows_every_word(
 
 
 @pytest.mark.parametrize("speaks", [True, False])
-def test_the_page_that_all_can_read_names_nobody(link: FakeLink, speaks: bool) -> None:
+def test_the_chest_screen_names_nobody(link: FakeLink, speaks: bool) -> None:
     link.speaks = speaks
     world = world_of(link)
     beside(world, link, 2, LaidCard(1, 0))
@@ -116,7 +114,7 @@ def test_no_number_comes_twice_and_another_seed_has_another_order(link: FakeLink
     assert [do(other, "call number").numbers[0] for _ in range(75)] != numbers
 
 
-def test_calls_keep_their_pace(link: FakeLink) -> None:
+def test_calls_keep_a_steady_pace(link: FakeLink) -> None:
     world = opened(world_of(link, pace=20.0))
     do(world, "call number")
     began = link.time
@@ -124,7 +122,7 @@ def test_calls_keep_their_pace(link: FakeLink) -> None:
     assert link.time - began >= 18
 
 
-def test_a_call_that_was_broken_off_was_not_made(world: LiveWorld, link: FakeLink) -> None:
+def test_an_interrupted_call_does_not_count(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.breaks["perform"] = "emergency stop is pressed"
     outcome = do(world, "call number")
@@ -133,14 +131,14 @@ def test_a_call_that_was_broken_off_was_not_made(world: LiveWorld, link: FakeLin
     assert world.tracker.count("call number") == 0
 
 
-def test_signs_are_requests_the_first_first(world: LiveWorld, link: FakeLink) -> None:
+def test_raised_signs_are_requests_in_order_of_time(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.state = replace(link.state, asks=((3, 5.0), (1, 9.0)))
     state = world.observe()
     assert state.attended == "user3" and world.tracker.queue == ["user3", "user1"]
 
 
-def test_who_waits_and_takes_the_sign_down_is_not_visited(world: LiveWorld, link: FakeLink) -> None:
+def test_a_person_who_takes_the_sign_down_is_not_visited(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.sign(2)
     world.observe()
@@ -150,7 +148,9 @@ def test_who_waits_and_takes_the_sign_down_is_not_visited(world: LiveWorld, link
     assert world.observe().attended is None
 
 
-def test_the_robot_goes_to_who_asks_and_reads_the_card(world: LiveWorld, link: FakeLink) -> None:
+def test_the_robot_visits_the_person_who_asks_and_reads_the_card(
+    world: LiveWorld, link: FakeLink
+) -> None:
     beside(world, link, 2, LaidCard(CARD))
     state = world.observe()
     assert state.place == "user2" and tuple(state.situation) == ("help", "AR", "correctly marked")
@@ -159,16 +159,14 @@ def test_the_robot_goes_to_who_asks_and_reads_the_card(world: LiveWorld, link: F
     assert goal[:2] == [stand.x, stand.y]
 
 
-def test_a_place_that_is_not_reached_is_not_where_the_robot_is(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_the_robot_stays_at_the_front_if_a_drive_fails(world: LiveWorld, link: FakeLink) -> None:
     link.missed.add("user2")
     beside(world, link, 2, LaidCard(CARD))
     assert world.observe().place == FRONT
     assert tuple(world.observe().situation) == ("navigate", "AR", "occluded")
 
 
-def test_wrong_marks_are_named_and_seen_to_be_taken_off(world: LiveWorld, link: FakeLink) -> None:
+def test_wrong_marks_are_named_and_their_removal_is_seen(world: LiveWorld, link: FakeLink) -> None:
     card = LaidCard(CARD)
     beside(world, link, 1, card)
     wrong = next(cell for cell in range(25) if not called_of(world, CARD) >> cell & 1)
@@ -193,7 +191,7 @@ def test_wrong_marks_are_named_and_seen_to_be_taken_off(world: LiveWorld, link: 
     assert world.observe().closed == "user1"  # the card is right, and the request is over
 
 
-def test_who_does_it_late_followed_and_did_not_comply(world: LiveWorld, link: FakeLink) -> None:
+def test_a_late_response_is_followed_but_not_complied(world: LiveWorld, link: FakeLink) -> None:
     card = LaidCard(CARD, seen=False)
     beside(world, link, 1, card)
     began = link.time
@@ -209,7 +207,7 @@ def test_who_does_it_late_followed_and_did_not_comply(world: LiveWorld, link: Fa
     assert world.observe().situation.user_state == "correctly marked"
 
 
-def test_who_does_nothing_did_not_follow(world: LiveWorld, link: FakeLink) -> None:
+def test_a_person_who_does_nothing_did_not_follow(world: LiveWorld, link: FakeLink) -> None:
     card = LaidCard(CARD)
     beside(world, link, 1, card)
     card.marked = 1
@@ -221,16 +219,14 @@ def test_who_does_nothing_did_not_follow(world: LiveWorld, link: FakeLink) -> No
     assert world.observe().situation.user_state == "incorrectly marked"
 
 
-def test_of_a_card_that_is_not_seen_nobody_knows_what_was_done(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_a_response_on_an_unseen_card_is_unknown(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 1, LaidCard(CARD, seen=False))
     outcome = do(world, "move card closer", "user1")
     assert outcome.completed and outcome.response is None
     assert world.observe().situation.user_state == "occluded"
 
 
-def test_encouragement_has_worked_when_the_sign_goes_down(world: LiveWorld, link: FakeLink) -> None:
+def test_encouragement_succeeds_when_the_sign_goes_down(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 1, LaidCard(CARD))
     link.meanwhile = lambda what, time: link.sign() if what == "wait" else None
     outcome = do(world, "encourage", "user1")
@@ -247,7 +243,7 @@ def test_a_sign_that_stays_up_keeps_the_request_open(world: LiveWorld, link: Fak
     assert world.observe().closed is None and world.observe().attended == "user1"
 
 
-def test_what_a_silent_sensor_saw_last_keeps_no_request_open(
+def test_the_last_reading_of_a_silent_sensor_keeps_no_request_open(
     world: LiveWorld, link: FakeLink
 ) -> None:
     beside(world, link, 1, LaidCard(CARD))
@@ -258,7 +254,7 @@ def test_what_a_silent_sensor_saw_last_keeps_no_request_open(
     assert world.observe().closed == "user1" and world.observe().attended is None
 
 
-def test_whether_a_waiting_sign_is_down_is_certain_before_tangy_goes_on(
+def test_a_waiting_request_closes_only_after_its_sign_is_surely_down(
     world: LiveWorld, link: FakeLink
 ) -> None:
     beside(world, link, 1, LaidCard(CARD))
@@ -270,9 +266,7 @@ def test_whether_a_waiting_sign_is_down_is_certain_before_tangy_goes_on(
     assert world.observe().user("user3").request == "ANR"
 
 
-def test_a_waiting_sign_that_is_hidden_for_a_moment_still_asks(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_a_briefly_hidden_sign_stays_a_request(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 1, LaidCard(CARD))
     link.sign(1, 3)
     world.observe()
@@ -289,7 +283,7 @@ def test_a_waiting_sign_that_is_hidden_for_a_moment_still_asks(
     assert "user3" in world.tracker.queue
 
 
-def test_of_a_request_without_a_sign_it_is_not_seen_what_came_of_it(
+def test_a_request_without_a_sign_has_no_observed_response(
     world: LiveWorld, link: FakeLink
 ) -> None:
     opened(world)
@@ -302,14 +296,14 @@ def test_of_a_request_without_a_sign_it_is_not_seen_what_came_of_it(
     assert world.observe().closed == "user3"
 
 
-def test_nothing_is_asked_about_a_card_that_is_not_seen(world: LiveWorld, link: FakeLink) -> None:
+def test_the_robot_asks_nothing_about_an_unseen_card(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 1, LaidCard(CARD, seen=False))
     before = len(link.said)
     assert not do(world, "remove markers", "user1").completed
     assert len(link.said) == before
 
 
-def test_a_win_is_celebrated_beside_the_winner_only(world: LiveWorld, link: FakeLink) -> None:
+def test_a_win_is_celebrated_only_beside_the_winner(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     assert not do(world, "celebrate").completed
     card = LaidCard(CARD)
@@ -324,7 +318,7 @@ def test_a_win_is_celebrated_beside_the_winner_only(world: LiveWorld, link: Fake
     assert do(world, "valediction").completed and world.over
 
 
-def test_faces_are_looked_at_where_they_are_known(link: FakeLink) -> None:
+def test_a_robot_that_knows_faces_looks_at_the_face_before_the_card(link: FakeLink) -> None:
     world = world_of(link, knows_faces=True)
     seen: list[tuple[str, str, Any]] = []
     world.cards.looked = lambda what, place, found: seen.append((what, place, found))
@@ -333,7 +327,7 @@ def test_faces_are_looked_at_where_they_are_known(link: FakeLink) -> None:
     assert seen[0] == ("face", "user2", None) and seen[1][:2] == ("card", "user2")
 
 
-def test_whoever_sits_at_somebody_elses_place_is_spoken_to_and_learnt_of(link: FakeLink) -> None:
+def test_the_recognised_person_at_a_seat_is_addressed_by_name(link: FakeLink) -> None:
     world = world_of(link, knows_faces=True)
     link.faces["user2"] = "user4"
     beside(world, link, 2, LaidCard(CARD))
@@ -348,7 +342,7 @@ def test_whoever_sits_at_somebody_elses_place_is_spoken_to_and_learnt_of(link: F
     assert not world.sitting
 
 
-def test_a_call_can_be_taken_back_and_comes_again(world: LiveWorld, link: FakeLink) -> None:
+def test_a_call_that_is_taken_back_returns_to_the_draw(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     (first,) = do(world, "call number").numbers
     world.change(GameChange(game="g", steps=2, what="taken back", number=first))
@@ -362,7 +356,7 @@ def asked_of(link: FakeLink) -> list[str]:
 
 
 @pytest.mark.parametrize(("critical", "why"), [(True, "laser-disconnected"), (False, "")])
-def test_a_critical_fault_breaks_a_call_off_and_another_does_not(
+def test_only_a_critical_fault_interrupts_a_call(
     world: LiveWorld, link: FakeLink, critical: bool, why: str
 ) -> None:
     opened(world)
@@ -387,7 +381,7 @@ def test_a_critical_fault_breaks_a_call_off_and_another_does_not(
     assert world.called and world.tracker.count("call number") == 1
 
 
-def test_a_critical_fault_on_the_way_leaves_the_request_open_and_the_robot_where_it_was(
+def test_a_critical_fault_on_the_way_keeps_the_request_open(
     world: LiveWorld, link: FakeLink
 ) -> None:
     opened(world)
@@ -404,7 +398,7 @@ def test_a_critical_fault_on_the_way_leaves_the_request_open_and_the_robot_where
     assert "card" not in asked_of(link) and world.scene().card is None
 
 
-def test_a_robot_that_falls_silent_breaks_off_what_it_did(world: LiveWorld, link: FakeLink) -> None:
+def test_a_silent_robot_interrupts_its_behaviour(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.slow["perform"] = 5
     link.silent = "the robot process has ended"
@@ -420,7 +414,7 @@ def test_halting_stops_the_robot_before_anything_else(world: LiveWorld, link: Fa
     assert link.told[-1] == "release"
 
 
-def test_people_are_asked_aloud_and_given_time(world: LiveWorld, link: FakeLink) -> None:
+def test_a_recovery_asks_people_aloud_and_waits(world: LiveWorld, link: FakeLink) -> None:
     shown = {"camera-occluded": False}
     world.commands.diagnosed = lambda _: {} if link.time > 9 else shown
     took = world.recover(
@@ -429,7 +423,9 @@ def test_people_are_asked_aloud_and_given_time(world: LiveWorld, link: FakeLink)
     assert link.said[-1] == "Please uncover my eyes." and 5 < took < 25
 
 
-def test_a_request_that_is_set_aside_is_over(world: LiveWorld, link: FakeLink) -> None:
+def test_setting_a_request_aside_closes_it_until_the_next_sign(
+    world: LiveWorld, link: FakeLink
+) -> None:
     beside(world, link, 1, LaidCard(CARD))
     world.recover(Remedy("set aside", "request-stuck", person="user1"))
     assert world.observe().attended is None  # the sign is up all the same
@@ -451,7 +447,7 @@ def drives(link: FakeLink) -> list[str]:
     return [what["name"] for do, what in link.done if do == "go"]
 
 
-def test_a_robot_that_does_not_know_its_place_looks_round_before_a_game(link: FakeLink) -> None:
+def test_a_lost_robot_looks_round_before_a_game(link: FakeLink) -> None:
     lost(link, spread=1.4)
     link.meanwhile = lambda do, _: lost(link) if do == "spin" else None
     link.state = replace(link.state, pose=Pose(8.0, 2.0, 0.0))
@@ -460,9 +456,7 @@ def test_a_robot_that_does_not_know_its_place_looks_round_before_a_game(link: Fa
     assert asked.index("spin") < asked.index("go") and drives(link) == [FRONT]
 
 
-def test_a_robot_that_was_driven_elsewhere_goes_back_before_it_goes_on(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_a_displaced_robot_returns_to_its_place_first(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 2, LaidCard(CARD))
     link.done.clear()
     link.state = replace(link.state, pose=Pose(9.0, 0.8, 0.0))
@@ -473,7 +467,7 @@ def test_a_robot_that_was_driven_elsewhere_goes_back_before_it_goes_on(
     assert drives(link) == [FRONT]
 
 
-def test_nothing_is_done_from_where_the_robot_could_not_get_back_from(
+def test_no_behaviour_runs_if_the_robot_cannot_return_to_its_place(
     world: LiveWorld, link: FakeLink
 ) -> None:
     opened(world)
@@ -483,7 +477,7 @@ def test_nothing_is_done_from_where_the_robot_could_not_get_back_from(
     assert not outcome.completed and world.called == [] and "get back" in world.broken
 
 
-def test_looking_again_plans_anew_and_looks_round_where_only_that_shows_it(
+def test_looking_again_replans_and_spins_only_for_a_lost_pose(
     world: LiveWorld, link: FakeLink
 ) -> None:
     world.recover(Remedy("look again", "path-blocked", "navigator"))
@@ -502,9 +496,7 @@ def test_looking_again_plans_anew_and_looks_round_where_only_that_shows_it(
     assert link.told[-1] == "release"
 
 
-def test_the_time_for_which_it_stood_still_counts_when_staff_are_done(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_the_recovery_time_includes_the_standstill(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.time += 60.0  # it was paused: that is no fault's
     world.recover(Remedy("halt", "laser-disconnected", "laser"))
@@ -518,7 +510,7 @@ def test_the_time_for_which_it_stood_still_counts_when_staff_are_done(
     assert world.recover(Remedy("replan", "path-blocked", "navigator")) < 10.0
 
 
-def test_what_was_called_off_and_is_never_answered_is_given_up(
+def test_a_cancelled_command_without_an_answer_is_abandoned(
     world: LiveWorld, link: FakeLink, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tangy_hw.robot_client.commands.BREAK_SECONDS", 0.0)
@@ -538,9 +530,7 @@ def test_a_second_look_at_a_card_takes_another_picture(world: LiveWorld, link: F
     assert asked_of(link).count("card") == pictures + 1
 
 
-def test_a_second_look_ends_at_once_where_the_robot_may_not_look(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_a_second_look_ends_at_once_on_a_silent_robot(world: LiveWorld, link: FakeLink) -> None:
     state = beside(world, link, 2, LaidCard(CARD)).observe()
     link.slow["card"] = 5
     link.silent = "the robot process has ended"

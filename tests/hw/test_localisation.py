@@ -1,4 +1,4 @@
-"""Localisation: the robot is followed, found, and knows when it was carried off."""
+"""Localisation: pose tracking, global localisation, and the kidnapped robot."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Driven:
 class TestFollowing:
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [1, 2])
-    def test_a_robot_that_drives_is_followed_within_centimetres(self, seed: int) -> None:
+    def test_a_driving_robot_is_localised_within_centimetres(self, seed: int) -> None:
         found = Driven(seed).drive(ROUND)
         off = [one for one, _ in found]
         assert np.median(off) < 0.02 and np.percentile(off, 95) < 0.05
@@ -60,7 +60,7 @@ class TestFollowing:
         assert np.linalg.eigvalsh(last.covariance).min() > -1e-9
 
     @pytest.mark.parametrize("seed", [1, 2])
-    def test_a_robot_whose_scans_lie_metres_apart_is_followed(self, seed: int) -> None:
+    def test_a_robot_is_localised_with_scans_metres_apart(self, seed: int) -> None:
         robot = Driven(seed)
         off = []
         for number, twist in enumerate(ROUND):
@@ -76,7 +76,7 @@ class TestFollowing:
         first, second = (Driven(4).drive(ROUND[:60])[-1][1] for _ in range(2))
         assert first.pose == second.pose and first.fit == second.fit
 
-    def test_between_two_weighings_the_wheels_count(self) -> None:
+    def test_odometry_moves_the_pose_between_two_particle_updates(self) -> None:
         robot = Driven(5)
         robot.drive([Twist(0, 0)] * 3)
         before = robot.localisation.particles.copy()
@@ -84,7 +84,7 @@ class TestFollowing:
         assert (robot.localisation.particles == before).all()  # 3 cm are not worth it
         assert off < 0.1
 
-    def test_people_who_stand_around_do_not_make_it_doubt(self) -> None:
+    def test_standing_people_do_not_lower_the_confidence(self) -> None:
         robot = Driven(6)
         robot.drive(ROUND[:30])
         robot.sides = np.vstack(
@@ -94,7 +94,7 @@ class TestFollowing:
         assert min(estimate.fit for _, estimate in found) > LOST
         assert max(off for off, _ in found) < 0.1
 
-    def test_within_a_ring_of_chairs_it_trusts_its_wheels(self) -> None:
+    def test_the_pose_follows_the_odometry_inside_a_ring_of_chairs(self) -> None:
         robot = Driven(7)
         robot.drive(ROUND[:30])
         x, y = robot.true.x, robot.true.y
@@ -103,7 +103,7 @@ class TestFollowing:
         assert max(off for off, _ in found) < 0.1
         assert not any(estimate.lost for _, estimate in found)
 
-    def test_a_cloth_over_the_scanner_leaves_it_where_it_is(self) -> None:
+    def test_a_covered_scanner_leaves_the_pose_unchanged(self) -> None:
         robot = Driven(8)
         _, before = robot.drive(ROUND[:30])[-1]
         cloth = Scan(-2.3, 4.6 / 359, np.full(360, 0.05), 30.0)
@@ -115,7 +115,7 @@ class TestFollowing:
 class TestFinding:
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [10, 11])
-    def test_a_robot_that_may_be_anywhere_finds_itself_as_it_turns(self, seed: int) -> None:
+    def test_a_turn_localises_a_robot_without_a_start_pose(self, seed: int) -> None:
         robot = Driven(seed, start=None, true=Pose(3.0, 2.0, 0.4))
         off, estimate = robot.drive([Twist(0, 0.5)] * 126)[-1]
         assert off < 0.15 and robot.heading_off(estimate) < 0.1
@@ -123,7 +123,7 @@ class TestFinding:
 
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [20, 21])
-    def test_a_robot_that_was_carried_off_says_so_and_finds_itself(self, seed: int) -> None:
+    def test_a_kidnapped_robot_reports_it_and_localises_again(self, seed: int) -> None:
         robot = Driven(seed)
         robot.drive(ROUND[:60])
         robot.true = Pose(1.5, 2.5, 2.0)
@@ -135,7 +135,7 @@ class TestFinding:
 
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [25, 26])
-    def test_a_turn_that_the_wheels_missed_is_noticed_and_made_up_for(self, seed: int) -> None:
+    def test_a_turn_missing_from_the_odometry_is_corrected(self, seed: int) -> None:
         robot = Driven(seed)
         robot.drive(ROUND[:60])
         robot.true = robot.true._replace(heading=wrap(robot.true.heading + 1.4))
@@ -144,14 +144,14 @@ class TestFinding:
         off, estimate = found[-1]
         assert off < 0.15 and robot.heading_off(estimate) < 0.1 and estimate.found
 
-    def test_a_robot_that_stands_is_found_out_as_well(self) -> None:
+    def test_a_wrong_pose_is_noticed_while_the_robot_stands(self) -> None:
         robot = Driven(23)
         robot.drive(ROUND[:60])
         robot.true = Pose(1.5, 2.5, 2.0)
         found = robot.drive([Twist(0, 0)] * 60)
         assert any(estimate.lost for _, estimate in found)
 
-    def test_staff_may_say_where_it_is(self) -> None:
+    def test_staff_can_set_the_pose(self) -> None:
         robot = Driven(24, start=Pose(1, 1, 0))
         robot.localisation.place(START)
         off, _ = robot.drive(ROUND[:30])[-1]

@@ -1,4 +1,4 @@
-"""The parts of localisation: particles, the field they are weighed by, scans that are matched."""
+"""The parts of localisation: particles, the likelihood field, scan matching."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ROUND = tour([(5, 1.2), (8, 4.2), (5, 1.2)])
 class TestParticles:
     @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-1, 1), st.integers(0, 99))
     @settings(max_examples=25, deadline=None)
-    def test_without_error_all_move_as_the_wheels_say(
+    def test_particles_follow_the_odometry_exactly_without_noise(
         self, x: float, y: float, turn: float, seed: int
     ) -> None:
         rng, step = np.random.default_rng(seed), Pose(x, y, turn)
@@ -43,9 +43,7 @@ class TestParticles:
             assert abs(wrap(float(after[2]) - there.heading)) < 1e-9
 
     @pytest.mark.parametrize("step", [Pose(2.0, 0, 0), Pose(0, 0, 2.0)])
-    def test_one_long_step_is_as_uncertain_as_the_short_ones_it_is_made_of(
-        self, step: Pose
-    ) -> None:
+    def test_one_long_step_adds_no_more_uncertainty_than_its_short_steps(self, step: Pose) -> None:
         rng = np.random.default_rng(2)
         many = start = np.zeros((4000, 3))
         for _ in range(20):
@@ -54,7 +52,7 @@ class TestParticles:
         assert once[:, 2].std() < 1.5 * many[:, 2].std()
         assert once[:, :2].std(axis=0).max() < 1.5 * many[:, :2].std(axis=0).max()
 
-    def test_driving_backwards_is_no_more_uncertain_than_forwards(self) -> None:
+    def test_a_drive_backwards_is_as_certain_as_one_forwards(self) -> None:
         start = np.zeros((4000, 3))
         ahead = move(start, Pose(0.5, 0, 0), np.random.default_rng(1))
         back = move(start, Pose(-0.5, 0, 0), np.random.default_rng(1))
@@ -63,7 +61,9 @@ class TestParticles:
 
     @given(st.lists(st.floats(0.01, 1), min_size=1, max_size=30), st.integers(1, 200))
     @settings(max_examples=25, deadline=None)
-    def test_each_is_drawn_as_often_as_it_weighs(self, weights: list[float], count: int) -> None:
+    def test_resampling_draws_particles_in_proportion_to_their_weights(
+        self, weights: list[float], count: int
+    ) -> None:
         shares = np.array(weights) / sum(weights)
         drawn = resample(np.arange(len(weights) * 3.0).reshape(-1, 3), shares, count,
                          np.random.default_rng(0))  # fmt: skip
@@ -71,13 +71,13 @@ class TestParticles:
             times = int((drawn[:, 0] == number * 3).sum())
             assert abs(times - share * count) < 1 + 1e-6
 
-    def test_more_places_need_more_particles(self) -> None:
+    def test_a_wider_spread_needs_more_particles(self) -> None:
         rng = np.random.default_rng(0)
         here = needed(around(START, (0.05, 0.05, 0.02), 2000, rng))
         wide = needed(around(START, (2, 2, 2), 2000, rng))
         assert here == FEWEST < wide <= MOST
 
-    def test_the_heavier_of_two_places_is_the_likeliest(self) -> None:
+    def test_the_estimate_is_the_cluster_with_the_most_weight(self) -> None:
         rng = np.random.default_rng(0)
         both = np.vstack((around(Pose(1, 1, pi), (0.1, 0.1, 0.05), 300, rng),
                           around(Pose(8, 3, 0), (0.1, 0.1, 0.05), 200, rng)))  # fmt: skip
@@ -87,7 +87,7 @@ class TestParticles:
 
 
 class TestField:
-    def test_no_pose_fits_better_than_the_true_one(self) -> None:
+    def test_the_true_pose_has_the_best_score(self) -> None:
         field = LikelihoodField(MAP)
         true = Pose(4.0, 2.0, 0.7)
         points = thin(look(SIDES, true), 20.0)
@@ -97,14 +97,14 @@ class TestField:
         scores = field.scores(np.vstack((true, others)), points)
         assert scores[0] > 0.9 and scores[0] == scores.max()
 
-    def test_many_poses_are_scored_as_each_by_itself(self) -> None:
+    def test_poses_get_the_same_scores_together_and_alone(self) -> None:
         field = LikelihoodField(MAP)
         points = thin(look(SIDES, START), 20.0)
         poses = around(START, (3, 3, 2), IN_CACHE // len(points) + 7, np.random.default_rng(0))
         alone = [field.beams(one[None], points).mean() for one in poses]
         assert field.scores(poses, points) == pytest.approx(np.array(alone), abs=1e-5)
 
-    def test_beams_that_end_short_tell_nothing_and_those_through_walls_do(self) -> None:
+    def test_only_beams_through_walls_lower_the_score(self) -> None:
         field, true = LikelihoodField(MAP), Pose(4.0, 2.0, 0.7)
         points = thin(look(SIDES, true), 20.0)
         right = field.evidence(true, points)
@@ -117,7 +117,7 @@ class TestField:
 
 class TestSearch:
     @pytest.mark.parametrize("turn", [-1.4, 1.4, 3.0])
-    def test_a_turn_that_the_wheels_missed_needs_few_tries(self, turn: float) -> None:
+    def test_a_missed_turn_is_found_in_few_tries(self, turn: float) -> None:
         field, rng = LikelihoodField(MAP), np.random.default_rng(0)
         points = thin(look(SIDES, START), 20.0)
         last = START._replace(heading=wrap(START.heading + turn))
@@ -129,7 +129,7 @@ class TestSearch:
 class TestMatching:
     @given(st.floats(-0.15, 0.15), st.floats(-0.15, 0.15), st.floats(-0.15, 0.15))
     @settings(max_examples=25, deadline=None)
-    def test_two_scans_tell_how_the_robot_moved_between_them(
+    def test_matching_two_scans_gives_the_motion_between_them(
         self, x: float, y: float, turn: float
     ) -> None:
         step = Pose(x, y, turn)
@@ -139,7 +139,7 @@ class TestMatching:
         assert match.pose == pytest.approx(step, abs=0.01)
         assert match.told == pytest.approx(np.eye(2), abs=1e-6)
 
-    def test_a_bare_corridor_does_not_tell_how_far_it_was(self) -> None:
+    def test_matching_in_a_bare_corridor_leaves_the_distance_uncertain(self) -> None:
         corridor = np.array([(-50.0, -1, 50, -1), (-50.0, 1, 50, 1)])
         first = look(corridor, Pose(0, 0, 0))
         second = look(corridor, Pose(0.3, 0.1, 0.0))
@@ -162,14 +162,14 @@ class TestSlipDetector:
         return found
 
     @pytest.mark.parametrize("seed", [0, 1])
-    def test_wheels_that_grip_agree_with_the_laser(self, seed: int) -> None:
+    def test_gripping_wheels_show_no_slip(self, seed: int) -> None:
         assert max(self.slips(1.0, seed)) < 0.15
 
     @pytest.mark.parametrize("grip", [0.0, 0.5])
-    def test_wheels_that_slip_disagree(self, grip: float) -> None:
+    def test_slipping_wheels_show_slip(self, grip: float) -> None:
         assert max(self.slips(grip)) > 0.3
 
-    def test_driving_backwards_counted_as_forwards_is_noticed(self) -> None:
+    def test_odometry_with_the_wrong_sign_counts_as_slip(self) -> None:
         true, counted, detector, found = START, Pose(0, 0, 0), SlipDetector(), []
         for _ in range(40):
             true = driven(true, Twist(-0.2, 0.1), 0.1)
@@ -177,7 +177,7 @@ class TestSlipDetector:
             found.append(detector.update(counted, look(SIDES, true)))
         assert max(found) > 0.3
 
-    def test_it_forgets_after_it_was_mended_and_after_a_while(self) -> None:
+    def test_the_slip_estimate_returns_to_zero_at_rest_and_after_a_reset(self) -> None:
         detector, counted = SlipDetector(), Pose(0, 0, 0)
         scan = look(SIDES, START)
         for _ in range(40):
@@ -190,7 +190,7 @@ class TestSlipDetector:
         detector.reset()
         assert detector.metres == 0.0
 
-    def test_being_carried_off_is_not_slipping(self) -> None:
+    def test_a_carried_robot_shows_no_slip(self) -> None:
         detector, counted = SlipDetector(), Pose(0, 0, 0)
         detector.update(counted, look(SIDES, START))
         carried = Pose(1.5, 3.5, 2.0)
@@ -200,7 +200,7 @@ class TestSlipDetector:
             assert detector.update(counted, look(SIDES, there)) < 0.3
 
 
-def test_a_step_seen_from_a_pose_is_the_same_on_every_frame() -> None:
+def test_a_relative_pose_does_not_depend_on_the_frame() -> None:
     frame = Pose(3, -1, 2)
     one, other = Pose(1, 2, 0.5), Pose(0.5, 3, -2)
     assert relative_pose(compose(frame, one), compose(frame, other)) == pytest.approx(

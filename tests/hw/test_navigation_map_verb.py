@@ -1,4 +1,4 @@
-"""`tangy map`: rooms, logs and maps, drawn, written and told as JSON."""
+"""`tangy map`: rooms, logs and maps, drawn, written and printed as JSON."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def log_that_slips(path: Path, slip: Pose) -> Path:
 
 class TestMap:
     @pytest.mark.slow
-    def test_how_well_matched_scans_close_is_said(self, tmp_path: Path) -> None:
+    def test_the_share_of_contradicting_beams_is_printed(self, tmp_path: Path) -> None:
         log = log_that_slips(tmp_path / "a.log", Pose(0.05, 0.05, 0.0))
         told = json.loads(tangy_map(log, "--match", "--json").stdout)
         assert told["matched"] and told["contradicted"] < 0.05
@@ -69,16 +69,14 @@ class TestMap:
         assert f"{told['contradicted']:.0%} of the beams contradict the map" in shown
 
     @pytest.mark.slow
-    def test_a_map_that_does_not_close_is_refused_and_only_its_picture_written(
-        self, tmp_path: Path
-    ) -> None:
+    def test_a_torn_map_is_refused_and_only_its_picture_written(self, tmp_path: Path) -> None:
         log, png = log_that_slips(tmp_path / "a.log", Pose(2.0, 1.5, 0.9)), tmp_path / "a.png"
         with pytest.raises(TangyError, match=r"the map does not close.* a\.png shows it"):
             tangy_map(log, "--match", "--png", png, "--yaml", tmp_path / "a.yaml")
         assert png.exists() and not (tmp_path / "a.yaml").exists()
         assert json.loads(tangy_map(log, "--json").stdout)["contradicted"] > 0.15
 
-    def test_the_map_of_a_room_is_written_as_ros_reads_it(self, tmp_path: Path) -> None:
+    def test_the_map_of_a_room_is_written_in_the_ros_format(self, tmp_path: Path) -> None:
         done = tangy_map("--room", "common-room", "--yaml", tmp_path / "room.yaml", "--json")
         told = json.loads(done.stdout)
         assert told["room"] == "common-room" and told["resolution"] == 0.05
@@ -93,7 +91,7 @@ class TestMap:
         assert told["scans"] == told["used"] == 24 and not told["matched"]
         assert 0.5 * 80 < told["free_m2"] < 1.1 * 80
 
-    def test_a_map_can_be_looked_at(self, tmp_path: Path) -> None:
+    def test_a_map_file_can_be_shown(self, tmp_path: Path) -> None:
         tangy_map("--room", "common-room", "--yaml", tmp_path / "room.yaml")
         done = tangy_map(tmp_path / "room.yaml", "--ascii", "--png", tmp_path / "room.png")
         assert done.exit_code == 0 and "#" in done.stdout and "room.png" in done.stdout
@@ -113,7 +111,7 @@ class TestMap:
             (["--room", "common-room", "--yaml", "/proc/no/room.yaml"], "cannot be written"),
         ],
     )
-    def test_what_cannot_be_drawn_is_one_sentence(self, words: list[str], told: str) -> None:
+    def test_an_unusable_file_is_refused_in_one_sentence(self, words: list[str], told: str) -> None:
         with pytest.raises(TangyError, match=told) as error:
             tangy_map(*words)
         assert "\n" not in str(error.value)

@@ -1,4 +1,4 @@
-"""Maps: rooms drawn from their profiles, files as ROS has them, and maps out of scans."""
+"""Maps: rooms drawn from their profiles, files in the ROS format, and maps from scans."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ def folder_with(tmp_path: Path, yaml: str = YAML, pixels: bytes = b"\x00\xcd\xfe
 
 
 class TestRooms:
-    def test_a_wall_stands_where_the_profile_says(self) -> None:
+    def test_the_walls_of_the_map_match_the_profile(self) -> None:
         drawn = map_of_room(ROOM)
         for x, y in ((0, 4), (ROOM.width, 4), (5, 0), (5, ROOM.depth)):
             row, column = drawn.cell(x, y)
             assert drawn.cells[row, column] == OCCUPIED
             assert np.allclose(drawn.point(row, column), (x, y), atol=1e-9)
 
-    def test_a_table_is_kept_out_of_and_only_its_legs_are_seen(self) -> None:
+    def test_a_table_is_a_keep_out_area_with_visible_legs(self) -> None:
         drawn = map_of_room(ROOM)
         left, near, right, far = ROOM.table
         middle = drawn.cell((left + right) / 2, (near + far) / 2)
@@ -51,7 +51,7 @@ class TestRooms:
         assert drawn.cells[middle] == FREE
         assert drawn.cells[drawn.cell(left + 0.1, near + 0.1)] == OCCUPIED
 
-    def test_nobody_sits_where_nobody_is_expected(self) -> None:
+    def test_an_empty_seat_is_free_space(self) -> None:
         seat = ROOM.seats[0]
         assert map_of_room(ROOM).keep_out[map_of_room(ROOM).cell(seat.x, seat.y)]
         bare = map_of_room(ROOM, people=0)
@@ -65,7 +65,7 @@ class TestRooms:
 
 
 class TestFiles:
-    def test_what_is_written_is_read_again(self, tmp_path: Path) -> None:
+    def test_a_written_map_is_read_back_unchanged(self, tmp_path: Path) -> None:
         drawn = map_of_room(ROOM)
         written = write_map(drawn, tmp_path / "room.yaml")
         again = read_map(tmp_path / "room.yaml")
@@ -101,7 +101,7 @@ class TestFiles:
         read = read_map(folder_with(tmp_path, YAML.replace("negate: 0", "negate: 1")))
         assert read.cells.tolist() == [[OCCUPIED, OCCUPIED], [FREE, OCCUPIED]]
 
-    def test_thresholds_say_what_is_unknown(self, tmp_path: Path) -> None:
+    def test_the_thresholds_of_the_file_classify_cells(self, tmp_path: Path) -> None:
         read = read_map(folder_with(tmp_path, YAML + "free_thresh: 0.25\noccupied_thresh: 0.9\n"))
         assert read.cells.tolist() == [[FREE, FREE], [OCCUPIED, FREE]]
 
@@ -129,14 +129,14 @@ class TestFiles:
             (YAML.replace("a.pgm", "a.yaml"), "is not a picture"),
         ],
     )
-    def test_what_is_wrong_is_said_in_one_sentence(
+    def test_an_invalid_map_file_is_refused_in_one_sentence(
         self, yaml: str, told: str, tmp_path: Path
     ) -> None:
         with pytest.raises(MapFileError, match=told) as error:
             read_map(folder_with(tmp_path, yaml))
         assert "\n" not in str(error.value) and str(tmp_path) in str(error.value)
 
-    def test_a_picture_that_breaks_off_is_refused(self, tmp_path: Path) -> None:
+    def test_a_truncated_picture_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(MapFileError, match="breaks off"):
             read_map(folder_with(tmp_path, pixels=b"\x00"))
 
@@ -176,7 +176,7 @@ class TestScans:
         assert np.percentile(off, 95) <= 0.06
 
     @pytest.mark.slow
-    def test_matching_takes_the_errors_of_the_wheels_away(self) -> None:
+    def test_scan_matching_corrects_the_odometry(self) -> None:
         counted, truth = scans_of_a_tour(1.04, 0.05)
         found = aligned(counted)
         off = [abs(one.pose.x - t.x) + abs(one.pose.y - t.y)
@@ -186,7 +186,7 @@ class TestScans:
         assert max(off) < 0.1 < 0.4 < max(drifted)
 
     @pytest.mark.slow
-    def test_how_well_a_map_closed_is_told_by_beams_that_contradict_it(self) -> None:
+    def test_the_share_of_contradicting_beams_separates_closed_and_torn_maps(self) -> None:
         counted, _ = scans_of_a_tour(1.04, 0.05)
         found = aligned(counted)
         assert contradicted(found, map_of_scans(found)) < TORN / 3
@@ -198,18 +198,18 @@ class TestScans:
         torn = [*found[:half], *away]
         assert contradicted(torn, map_of_scans(torn)) > TORN
 
-    def test_of_nothing_nothing_is_contradicted(self) -> None:
+    def test_no_beams_contradict_an_empty_map(self) -> None:
         empty = PlacedScan(Scan(0.0, 0.1, np.array([np.inf, np.inf]), 30.0), Pose(0, 0, 0))
         wall = PlacedScan(Scan(0.0, 0.1, np.array([2.0, 2.1]), 30.0), Pose(0, 0, 0))
         made = map_of_scans([wall])
         assert contradicted([], made) == contradicted([empty], made) == 0.0
 
-    def test_a_map_that_would_be_too_large_is_refused(self) -> None:
+    def test_an_oversized_map_is_refused(self) -> None:
         scan = Scan(0.0, 0.1, np.array([5.0, 6.0]), 30.0)
         with pytest.raises(MapError, match="coarser"):
             map_of_scans([PlacedScan(scan, Pose(0, 0, 0)), PlacedScan(scan, Pose(9e5, 0, 0))])
 
-    def test_a_map_can_be_looked_at_in_ascii(self) -> None:
+    def test_a_map_can_be_drawn_in_ascii(self) -> None:
         lines = map_lines(map_of_room(ROOM), 60, ascii_only=True)
         text = "\n".join(lines)
         assert max(map(len, lines)) <= 60 and text.isascii()
@@ -223,7 +223,7 @@ ROBOTLASER = (
 
 
 class TestLogs:
-    def test_old_and_new_lines_are_read(self, tmp_path: Path) -> None:
+    def test_old_and_new_line_formats_are_read(self, tmp_path: Path) -> None:
         log = tmp_path / "a.log"
         log.write_text("# made by hand\nODOM 7 8 0.5 0 0 0 1 h 1\n" + FLASER + ROBOTLASER)
         old, new = read_log(log)
@@ -235,7 +235,7 @@ class TestLogs:
         assert new.pose == Pose(5, 6, 0.1) and new.odometry == Pose(4, 6, 0.2)
         assert new.stamp == 99.5
 
-    def test_a_packed_log_is_the_same_log(self, tmp_path: Path) -> None:
+    def test_a_packed_log_reads_like_the_plain_one(self, tmp_path: Path) -> None:
         (tmp_path / "a.log.gz").write_bytes(gzip.compress(FLASER.encode()))
         assert read_log(tmp_path / "a.log.gz")[0].stamp == 10.5
 
@@ -250,13 +250,15 @@ class TestLogs:
             (FLASER.replace("FLASER 3", "FLASER 999999999"), "no number of readings"),
         ],
     )
-    def test_a_broken_line_is_named(self, text: str, told: str, tmp_path: Path) -> None:
+    def test_an_invalid_line_is_refused_with_its_number(
+        self, text: str, told: str, tmp_path: Path
+    ) -> None:
         log = tmp_path / "a.log"
         log.write_text(text)
         with pytest.raises(LogError, match=told):
             read_log(log)
 
-    def test_what_is_no_log_is_refused(self, tmp_path: Path) -> None:
+    def test_files_that_are_no_logs_are_refused(self, tmp_path: Path) -> None:
         (tmp_path / "a.log").write_bytes(bytes(range(128, 256)))
         (tmp_path / "b.log").write_bytes(gzip.compress(FLASER.encode())[:-12])
         for name, told in (
@@ -268,6 +270,6 @@ class TestLogs:
                 read_log(tmp_path / name)
 
 
-def test_a_step_between_two_poses_leads_from_one_to_the_other() -> None:
+def test_composing_a_relative_pose_gives_the_second_pose() -> None:
     one, other = Pose(1.0, 2.0, 3.0), Pose(-2.0, 0.5, -3.0)
     assert compose(one, relative_pose(one, other)) == pytest.approx(other)

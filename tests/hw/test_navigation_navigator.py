@@ -1,4 +1,4 @@
-"""The navigator: goes where it is told, finds itself, and says how it stands."""
+"""The navigator: drives to goals, localises the robot, and reports its state."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.hw.raycast import driven, look, room_sides
 
 class TestGoing:
     @pytest.mark.slow
-    def test_it_goes_to_every_seat_and_back_to_the_front(self) -> None:
+    def test_the_robot_drives_to_every_seat_and_back_to_the_front(self) -> None:
         robot = DrivenRobot()
         for goal in (at_seat(0), at_seat(3), FRONT):
             robot.navigator.go(goal)
@@ -28,7 +28,7 @@ class TestGoing:
         assert {state for state, _ in robot.seen} == {"driving", "arrived"}
         assert not robot.touched
 
-    def test_it_knows_nothing_to_complain_of(self) -> None:
+    def test_an_undisturbed_drive_reports_good_facts(self) -> None:
         robot = DrivenRobot(seed=5)
         robot.navigator.go(at_seat(2))
         worst = {"fit": 1.0, "spread": 0.0, "slip": 0.0, "still": 0.0}
@@ -45,14 +45,14 @@ class TestGoing:
         assert worst["slip"] < 0.2 and worst["still"] < 0.5
 
     @pytest.mark.slow
-    def test_another_goal_takes_the_place_of_the_first(self) -> None:
+    def test_a_new_goal_replaces_the_old_one(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
         robot.navigator.go(at_seat(3))
         assert robot.arrives() and robot.off(at_seat(3))[0] < 0.1
 
-    def test_it_stands_when_it_is_called_off(self) -> None:
+    def test_a_cancelled_drive_stops_the_robot(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
@@ -63,7 +63,7 @@ class TestGoing:
         assert robot.navigator.goal is None
 
     @pytest.mark.slow
-    def test_it_stands_while_it_does_not_see(self) -> None:
+    def test_the_robot_stops_while_it_has_no_scan(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
@@ -74,14 +74,14 @@ class TestGoing:
         assert robot.arrives()
 
     @pytest.mark.parametrize("goal", [Pose(5, 5.4, 0), Pose(-3, 1, 0)])
-    def test_a_goal_that_cannot_be_says_so_at_once(self, goal: Pose) -> None:
+    def test_an_unreachable_goal_fails_at_once(self, goal: Pose) -> None:
         robot = DrivenRobot()
         robot.navigator.go(goal)
         robot.run(1)
         assert robot.navigator.state == "failed" and robot.navigator.why.startswith("The goal")
         assert robot.twist == STILL
 
-    def test_the_readings_are_those_that_the_diagnosis_knows(self) -> None:
+    def test_the_readings_match_the_facts_of_the_profile(self) -> None:
         robot = DrivenRobot()
         robot.run(0.5)
         localisation, navigator = robot.navigator.readings(0.25)
@@ -92,7 +92,7 @@ class TestGoing:
         assert navigator.device == "navigator" and navigator.facts == {"path": "clear"}
         assert navigator.age == 0.25
 
-    def test_it_knows_of_the_table_s_top_which_no_laser_sees(self) -> None:
+    def test_the_table_top_is_an_obstacle_although_the_laser_misses_it(self) -> None:
         robot = DrivenRobot()
         robot.run(0.3)
         ahead = robot.navigator.unseen
@@ -109,7 +109,7 @@ class TestGoing:
 
 
 class TestFaults:
-    def test_wheels_that_do_not_turn_are_counted_in_seconds(self) -> None:
+    def test_blocked_wheels_are_measured_in_seconds(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
@@ -121,7 +121,7 @@ class TestFaults:
         robot.run(0.5)
         assert robot.navigator.facts()["still"] == 0.0
 
-    def test_wheels_that_slip_are_counted_in_metres(self) -> None:
+    def test_slipping_wheels_are_measured_in_metres(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
@@ -131,7 +131,7 @@ class TestFaults:
 
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [1, 2])
-    def test_carried_off_it_turns_finds_itself_and_goes_on(self, seed: int) -> None:
+    def test_a_kidnapped_robot_spins_localises_and_reaches_its_goal(self, seed: int) -> None:
         robot = DrivenRobot(seed=seed)
         robot.navigator.go(at_seat(0))
         robot.run(5)
@@ -142,7 +142,7 @@ class TestFaults:
         assert robot.arrives(120) and robot.off(at_seat(0))[0] < 0.15
 
     @pytest.mark.slow
-    def test_one_that_is_lost_for_good_gives_up_after_two_turns(self) -> None:
+    def test_a_lost_robot_gives_up_after_two_spins(self) -> None:
         robot = DrivenRobot(seed=1)
         robot.navigator.go(at_seat(0))
         robot.run(5)
@@ -164,7 +164,7 @@ class TestFaults:
         assert robot.twist == STILL and robot.navigator.state == "failed"
 
     @pytest.mark.slow
-    def test_told_to_it_turns_once_and_stands(self) -> None:
+    def test_a_spin_turns_once_and_stops(self) -> None:
         robot = DrivenRobot()
         robot.navigator.spin()
         turned = []
@@ -180,7 +180,7 @@ class TestFaults:
 class TestLateBase:
     """A base whose odometry and commands lag by .2 s."""
 
-    def test_it_reaches_its_speed_as_fast_as_the_limits_allow(self) -> None:
+    def test_the_robot_accelerates_at_the_limit(self) -> None:
         told = commands_to_a_late_base(seconds=4.0)
         limits = MotionLimits()
         first = next(at for at, speed in enumerate(told) if speed > 0)
@@ -188,7 +188,7 @@ class TestLateBase:
         assert fast - first <= 1.2 * 0.9 * limits.max_speed / limits.acceleration / 0.1
         assert max(b - a for a, b in pairwise(told)) <= limits.acceleration * 0.1 + 1e-9
 
-    def test_a_base_that_does_not_move_is_not_told_to_race(self) -> None:
+    def test_commands_to_a_blocked_base_stay_slow(self) -> None:
         limits = MotionLimits()
         told = commands_to_a_late_base(seconds=4.0, moves=False)
         assert 0 < max(told) <= limits.acceleration * (limits.latency + 0.1) + 1e-9

@@ -1,4 +1,4 @@
-"""The navigator: goes round what is in the way, and waits where there is no way."""
+"""The navigator: drives round obstacles, and waits while no path is free."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
 
 class TestObstacles:
     @pytest.mark.slow
-    def test_it_goes_round_a_chair_that_is_put_in_its_way(self) -> None:
+    def test_the_robot_drives_round_a_chair_in_its_path(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(3))
         robot.run(3)
@@ -28,7 +28,7 @@ class TestObstacles:
         assert not robot.touched
 
     @pytest.mark.slow
-    def test_it_waits_where_there_is_no_way_and_goes_on_when_there_is(self) -> None:
+    def test_the_robot_waits_for_a_blocked_path_to_clear(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(3))
         robot.run(2)
@@ -41,7 +41,7 @@ class TestObstacles:
         assert robot.arrives() and not robot.touched
 
     @pytest.mark.slow
-    def test_within_a_ring_of_chairs_it_says_that_there_is_no_way(self) -> None:
+    def test_a_robot_enclosed_by_chairs_reports_no_path(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
@@ -54,7 +54,7 @@ class TestObstacles:
         assert robot.arrives() and not robot.touched
 
     @pytest.mark.slow
-    def test_somebody_who_walks_by_is_let_pass(self) -> None:
+    def test_a_passing_person_causes_no_detour(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))
         robot.run(4)
@@ -66,7 +66,7 @@ class TestObstacles:
         assert robot.arrives()
         assert {path for _, path in robot.seen} == {"clear"} and not robot.touched
 
-    def test_what_it_saw_is_shown_and_forgotten_when_it_has_gone(self) -> None:
+    def test_seen_obstacles_are_shown_until_they_are_gone(self) -> None:
         robot = DrivenRobot(CHAIR)
         robot.run(1)
         points = robot.navigator.obstacles
@@ -76,19 +76,19 @@ class TestObstacles:
         robot.run(3)
         assert len(robot.navigator.obstacles) == 0
 
-    def test_what_the_map_has_is_told_from_what_it_has_not(self) -> None:
+    def test_mapped_points_are_separated_from_unmapped_ones(self) -> None:
         obstacles = Obstacles(MAP)
         points = np.array([(0.0, 3.0), (1.3, 5.1), (5.0, 3.0), (0.5, 3.0), (-40.0, 3.0)])
         assert obstacles.among(points).tolist() == [False, False, True, True, True]
 
-    def test_a_person_close_to_a_wall_or_a_table_leg_is_no_part_of_it(self) -> None:
+    def test_a_person_close_to_a_wall_or_a_table_leg_is_unmapped(self) -> None:
         leg = table_legs(ROOM)[0]
         at_the_wall = [(3.0, off) for off in (0.0, 0.05, 0.17, 0.2)]
         at_the_table = [(leg.x + off, leg.y) for off in (0.0, 0.05, 0.17, 0.2)]
         for points in (at_the_wall, at_the_table):
             assert Obstacles(MAP).among(np.array(points)).tolist() == [False, False, True, True]
 
-    def test_a_person_who_moves_the_feet_under_the_table_stays_on_the_map(self) -> None:
+    def test_moved_feet_under_the_table_stay_mapped(self) -> None:
         foot = seat_feet(ROOM, ROOM.seats[0])[0]
         moved = np.array([(foot.x - 0.06, foot.y + 0.12), (foot.x, foot.y - 0.15)])
         assert Obstacles(MAP).among(moved).tolist() == [False, False]
@@ -102,13 +102,13 @@ class TestPeople:
 
     @pytest.mark.slow
     @pytest.mark.parametrize("scene", ["standing", "gap", "beside", "steps in"])
-    def test_nobody_who_stands_or_steps_in_and_stands_is_touched(self, scene: str) -> None:
+    def test_no_drive_touches_a_standing_person(self, scene: str) -> None:
         for drive in drives(scene, 2, seed=7):
             assert drive.arrived and drive.told == ""
             assert drive.nearest > 0.05 and not drive.touches
 
     @pytest.mark.slow
-    def test_before_somebody_who_stepped_in_it_drives_slowly(self) -> None:
+    def test_the_robot_drives_slowly_before_a_person_who_stepped_in(self) -> None:
         (drive,) = drives("steps in", 1, seed=11)
         assert drive.near and np.median(drive.near) <= 0.15
 
@@ -120,7 +120,7 @@ class TestPeople:
         assert drive.silent < 1.0
 
     @pytest.mark.slow
-    def test_without_anybody_nothing_slows_it_down(self) -> None:
+    def test_a_drive_without_people_is_not_slowed_down(self) -> None:
         """It takes no longer than it took before it kept away from people."""
         for drive, seconds in zip(drives("alone", 2, seed=7), (16.3, 15.0), strict=True):
             assert drive.arrived and drive.time <= seconds

@@ -1,4 +1,4 @@
-"""Planning and driving: ways that keep off things, and how they are followed."""
+"""Planning and driving: paths that keep their clearance, and the pursuit of a path."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ LIMITS = MotionLimits()
 class TestPlanning:
     @given(st.floats(0.5, 9.5), st.floats(0.5, 4.4), st.floats(0.5, 9.5), st.floats(0.5, 4.4))
     @settings(max_examples=20, deadline=None)
-    def test_a_way_leads_from_start_to_goal_and_touches_nothing(
+    def test_a_path_leads_from_start_to_goal_without_contact(
         self, ax: float, ay: float, bx: float, by: float
     ) -> None:
         path = plan(MAP, (ax, ay), (bx, by))
@@ -52,39 +52,37 @@ class TestPlanning:
         assert path.length >= hypot(bx - ax, by - ay) - 1e-6
         assert lengths(np.diff(path.points, axis=0)).max() <= 0.05 + 1e-9
 
-    def test_a_way_goes_round_the_table(self) -> None:
+    def test_a_path_leads_round_the_table(self) -> None:
         path = plan(MAP, (5, 4.3), (5, 7.3))
         assert path is not None and path.length > 7
         rows, columns = MAP.cells_of(path.points)
         assert not MAP.keep_out[rows, columns].any()
 
-    def test_a_straight_way_is_straight(self) -> None:
+    def test_a_path_in_free_space_is_straight(self) -> None:
         path = plan(MAP, (2, 2), (8, 3))
         assert path is not None and path.length == pytest.approx(hypot(6, 1), rel=1e-3)
 
-    def test_a_straightened_way_costs_no_more_than_the_grid_s(self) -> None:
+    def test_a_smoothed_path_costs_no_more_than_the_grid_path(self) -> None:
         path = plan(MAP, (1, 1), (9, 7))
         assert path is not None
         spent = sum(line_cost(COSTS, a, b)
                     for a, b in zip(path.points, path.points[1:], strict=False))  # fmt: skip
         assert spent <= path.cost * 1.02
 
-    def test_something_in_the_way_is_gone_round_with_room(self) -> None:
+    def test_a_path_keeps_clearance_from_an_obstacle(self) -> None:
         chair = np.array([[5.0, 2.5]])
         path = plan(MAP, (5, 1.2), (5, 4.3), chair)
         assert path is not None and path.length > 3.1
         assert lengths(path.points - chair).min() >= RADIUS
 
     @pytest.mark.parametrize("at", [(5.0, 2.5), (4.6, 3.0), (5.3, 2.0)])
-    def test_ways_keep_room_for_a_torso_and_more_from_where_somebody_stands(
-        self, at: tuple[float, float]
-    ) -> None:
+    def test_paths_keep_more_clearance_from_people(self, at: tuple[float, float]) -> None:
         legs = np.array([(at[0] + x, at[1] + y) for x in (-0.1, 0.1) for y in (-0.06, 0.06)])
         path = plan(MAP, (5, 1.2), (5, 4.3), legs)
         assert path is not None
         assert lengths(path.points - at).min() >= FOOTPRINT + 0.37
 
-    def test_between_two_who_stand_together_there_is_no_way_and_it_goes_round_them(self) -> None:
+    def test_a_path_leads_round_two_people_who_stand_together(self) -> None:
         pair = np.array([[4.4, 2.5], [5.6, 2.5]])
         path = plan(MAP, (5, 1.2), (5, 4.3), pair)
         assert path is not None and path.length > 3.5
@@ -93,7 +91,7 @@ class TestPlanning:
 
     @pytest.mark.parametrize("far", [0.5, 0.6, 0.7, 0.9])
     @pytest.mark.parametrize("side", range(4))
-    def test_a_goal_beside_somebody_is_reached_and_nobody_is_come_nearer_to(
+    def test_a_path_to_a_goal_beside_a_person_comes_no_nearer_than_the_goal(
         self, far: float, side: int
     ) -> None:
         goal, angle = (3.0, 2.5), side * pi / 2
@@ -103,14 +101,14 @@ class TestPlanning:
             assert path is not None
             assert lengths(path.points - person).min() >= min(far, KEEP) - 0.06
 
-    def test_a_goal_that_would_have_it_touch_somebody_has_no_way_just_now(self) -> None:
+    def test_a_goal_in_contact_with_a_person_has_no_path(self) -> None:
         assert plan(MAP, (7, 2.5), (3, 2.5), np.array([[3.0 + BESIDE - 0.05, 2.5]])) is None
 
-    def test_there_is_no_way_through_a_wall_of_chairs(self) -> None:
+    def test_no_path_leads_through_a_row_of_chairs(self) -> None:
         chairs = np.column_stack((np.arange(0, 10.1, 0.2), np.full(51, 2.5)))
         assert plan(MAP, (5, 1.2), (5, 4.3), chairs) is None
 
-    def test_a_goal_that_something_stands_on_has_no_way_just_now(self) -> None:
+    def test_an_occupied_goal_has_no_path(self) -> None:
         assert plan(MAP, (5, 1.2), (5, 4.3), np.array([[5.0, 4.3]])) is None
 
     @pytest.mark.parametrize(
@@ -122,13 +120,11 @@ class TestPlanning:
             ((5.0, -0.3), "inside an obstacle"),
         ],
     )
-    def test_a_goal_that_can_never_be_reached_says_why(
-        self, goal: tuple[float, float], told: str
-    ) -> None:
+    def test_an_unreachable_goal_has_a_reason(self, goal: tuple[float, float], told: str) -> None:
         with pytest.raises(PlanError, match=told):
             plan(MAP, (5, 1.2), goal)
 
-    def test_a_robot_too_near_to_a_wall_gets_away_from_it(self) -> None:
+    def test_a_path_leads_away_from_a_wall_that_is_too_near(self) -> None:
         path = plan(MAP, (0.15, 2.0), (5.0, 2.0))
         assert path is not None and path.points[0] == pytest.approx((0.15, 2.0))
 
@@ -138,28 +134,28 @@ class TestPlanning:
         with pytest.raises(PlanError):
             nearest_free(COSTS, 5.0, 5.4, within=0.1)
 
-    def test_costs_fall_away_from_things(self) -> None:
+    def test_costs_fall_with_the_distance_from_obstacles(self) -> None:
         across = [COSTS.at(x, 2.5) for x in (0.2, 0.45, 0.8, 2.0)]
         assert across == sorted(across, reverse=True) and across[0] == inf and across[3] < 1.1
 
 
 class TestFreeAhead:
-    def test_straight_ahead_is_what_geometry_says(self) -> None:
+    def test_the_free_distance_straight_ahead_matches_the_geometry(self) -> None:
         points = np.array([[2.0, 0.0], [1.0, 0.5], [-0.5, 0.0]])
         assert free_ahead(points, 0.0, 0.3) == pytest.approx(1.7)
 
-    def test_beside_the_way_is_not_in_the_way(self) -> None:
+    def test_points_beside_the_path_do_not_block_it(self) -> None:
         assert free_ahead(np.array([[1.0, 0.31], [1.0, -0.31]]), 0.0, 0.3) == inf
 
     @given(st.floats(0.2, 1.5), st.sampled_from([-1, 1]))
     @settings(max_examples=20, deadline=None)
-    def test_a_thing_on_an_arc_is_met_along_it(self, angle: float, side: int) -> None:
+    def test_the_free_distance_follows_the_arc(self, angle: float, side: int) -> None:
         radius = 2.0
         point = [radius * np.sin(angle), side * radius * (1 - np.cos(angle))]
         free = free_ahead(np.array([point]), side / radius, 0.2)
         assert free == pytest.approx(radius * angle - 0.2, abs=1e-6)
 
-    def test_nothing_around_is_free_for_ever(self) -> None:
+    def test_the_free_distance_without_points_is_infinite(self) -> None:
         assert free_ahead(np.zeros((0, 2)), 0.5, 0.3) == inf
 
 
@@ -182,7 +178,7 @@ def follow(
 class TestPursuit:
     @given(st.floats(-pi, pi), st.floats(-pi, pi), st.floats(0.3, 4.0), st.floats(-pi, pi))
     @settings(max_examples=25, deadline=None)
-    def test_it_arrives_where_and_as_it_should_from_any_heading(
+    def test_the_robot_reaches_position_and_heading_from_any_start(
         self, heading: float, final: float, far: float, way: float
     ) -> None:
         goal = np.array([far * np.cos(way), far * np.sin(way)])
@@ -192,7 +188,7 @@ class TestPursuit:
         assert hypot(pose.x - goal[0], pose.y - goal[1]) < 0.08
         assert abs((pose.heading - final + pi) % (2 * pi) - pi) < 0.05
 
-    def test_it_keeps_to_a_way_with_corners(self) -> None:
+    def test_the_robot_follows_a_path_with_corners(self) -> None:
         corners = resample(np.array([[0, 0], [2, 0], [2, 2], [4, 2]], dtype=float))
         _, _, way = follow(Pursuit(corners, 0.0), Pose(0, 0, 0))
         off = [lengths(corners - (pose.x, pose.y)).min() for pose in way]
@@ -207,32 +203,32 @@ class TestPursuit:
         assert np.diff(forward).max() <= LIMITS.acceleration * 0.1 + 1e-9
         assert forward.max() > 0.9 * LIMITS.max_speed
 
-    def test_it_first_turns_on_the_spot_when_the_way_lies_behind(self) -> None:
+    def test_the_robot_turns_on_the_spot_if_the_path_lies_behind(self) -> None:
         pursuit = Pursuit(resample(np.array([[0.0, 0.0], [-2.0, 0.0]])))
         twist = pursuit.command(Pose(0, 0, 0), STILL, EMPTY, 0.1)
         assert pursuit.state == "turning" and twist.forward == 0 and twist.turn != 0
 
     @pytest.mark.parametrize("ahead", [0.8, 1.5, 2.5])
-    def test_it_stops_before_something_that_stands_in_the_way(self, ahead: float) -> None:
+    def test_the_robot_stops_before_an_obstacle_on_the_path(self, ahead: float) -> None:
         pursuit = Pursuit(resample(np.array([[0.0, 0.0], [4.0, 0.0]])))
         box = sides((ahead, -0.2, ahead + 0.3, 0.2))
         pose, _, _ = follow(pursuit, Pose(0, 0, 0), box, seconds=15)
         assert pursuit.state == "waiting"
         assert LIMITS.radius < ahead - pose.x < LIMITS.radius + 0.35
 
-    def test_it_goes_on_when_the_way_is_free_again(self) -> None:
+    def test_the_robot_continues_when_the_path_is_free(self) -> None:
         pursuit = Pursuit(resample(np.array([[0.0, 0.0], [4.0, 0.0]])))
         pose, _, _ = follow(pursuit, Pose(0, 0, 0), sides((1.5, -0.2, 1.8, 0.2)), seconds=10)
         assert pursuit.state == "waiting"
         follow(pursuit, pose)
         assert pursuit.state == "arrived"  # type: ignore[comparison-overlap]
 
-    def test_what_stands_behind_the_goal_does_not_keep_it_from_arriving(self) -> None:
+    def test_an_obstacle_behind_the_goal_does_not_block_arrival(self) -> None:
         pursuit = Pursuit(resample(np.array([[0.0, 0.0], [2.0, 0.0]])), 0.0)
         pose, _, _ = follow(pursuit, Pose(0, 0, 0), sides((2.45, -2, 2.6, 2)))
         assert pursuit.state == "arrived" and abs(pose.x - 2.0) < 0.1
 
-    def test_it_is_gentle_near_people(self) -> None:
+    def test_the_robot_drives_slowly_near_people(self) -> None:
         path = resample(np.array([[0.0, 0.0], [6.0, 0.0]]))
         pursuit, pose, twist = Pursuit(path, 0.0), Pose(0, 0, 0), STILL
         person = np.array([[3.0, 0.8]])
@@ -243,7 +239,7 @@ class TestPursuit:
             pose = driven(pose, twist, 0.1)
         assert pursuit.state == "arrived"
 
-    def test_a_way_past_the_table_is_driven_without_touching_it(self) -> None:
+    def test_the_robot_passes_the_table_without_contact(self) -> None:
         path = plan(MAP, (5, 1.2), (8, 4.3))
         assert path is not None
         _, _, way = follow(Pursuit(path.points, pi / 2), Pose(5, 1.2, pi / 2), room_sides(ROOM))

@@ -1,4 +1,4 @@
-"""A graph of poses closes loops that drift tore, and bends no map for wheels that slipped."""
+"""A pose graph closes loops that drift opened, and refuses maps from slipping wheels."""
 
 from __future__ import annotations
 
@@ -42,9 +42,7 @@ def drifting(poses: list[Pose], turn: float, scale: float) -> list[PlacedScan]:
 
 @settings(max_examples=30, deadline=None)
 @given(st.floats(-0.004, 0.004), st.floats(0.97, 1.03), st.integers(40, 120))
-def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
-    turn: float, scale: float, number: int
-) -> None:
+def test_closing_a_drifted_loop_restores_its_shape(turn: float, scale: float, number: int) -> None:
     true = circle(number, 4.0)
     scans = drifting(true, turn, scale)
     found = close_loops(scans, [LoopClosure(0, number - 1, relative_pose(true[0], true[-1]), 0.0)])
@@ -56,7 +54,7 @@ def test_a_loop_that_drifts_is_closed_and_its_shape_comes_back(
     assert max(off) <= max(before) + 0.1
 
 
-def test_a_loop_with_what_only_looks_alike_is_left_out() -> None:
+def test_a_false_loop_closure_is_rejected() -> None:
     true = circle(80, 4.0)
     scans = drifting(true, 0.001, 1.0)
     right = [LoopClosure(n, 79 - n, relative_pose(true[n], true[79 - n]), 0.0) for n in range(4)]
@@ -66,7 +64,7 @@ def test_a_loop_with_what_only_looks_alike_is_left_out() -> None:
     assert max(off) < 0.5
 
 
-def test_without_loops_or_steps_nothing_moves() -> None:
+def test_poses_stay_unchanged_without_loop_closures() -> None:
     scans = drifting(circle(5, 1.0), 0.1, 1.0)
     assert close_loops(scans, []) == scans
     assert close_loops(scans[:1], [LoopClosure(0, 0, Pose(0, 0, 0), 0.0)]) == scans[:1]
@@ -80,9 +78,7 @@ def matched(scans: list[PlacedScan]) -> tuple[JudgedMap, JudgedMap]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("seed", "scale", "noise"), [(51, 1.03, 0.06), (52, 1.05, 0.1)])
-def test_a_map_that_drift_left_open_or_torn_is_closed(
-    seed: int, scale: float, noise: float
-) -> None:
+def test_a_map_torn_by_drift_is_closed(seed: int, scale: float, noise: float) -> None:
     walls, way = cluttered(32.0, 2.4, seed)
     log = driven_log(walls, way, seed, scale=scale, noise=noise)
     before, after = matched([one for one, _ in log])
@@ -94,7 +90,7 @@ def test_a_map_that_drift_left_open_or_torn_is_closed(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [61, 62, 63, 64])
-def test_a_map_is_taken_only_where_its_poses_are_right(seed: int) -> None:
+def test_a_closed_map_has_correct_poses(seed: int) -> None:
     walls, way = cluttered(32.0, 2.4, seed)
     log = driven_log(walls, way, seed, scale=1.04, noise=0.08)
     before, after = matched([one for one, _ in log])
@@ -105,7 +101,7 @@ def test_a_map_is_taken_only_where_its_poses_are_right(seed: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [71, 72])
-def test_wheels_that_slipped_are_refused_as_before(seed: int) -> None:
+def test_a_map_from_slipping_wheels_is_refused(seed: int) -> None:
     walls, way = ring(14.0, 2.0, 4.0)
     before, after = matched(logged(walls, way, seed, Slip(0.4, 0.06)))
     assert before.closes == after.closes == "torn" and not after.by_graph

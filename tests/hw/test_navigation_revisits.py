@@ -1,4 +1,4 @@
-"""A loop that is torn is told from one that closes, also where no beam contradicts the map."""
+"""Torn loops are distinguished from closed ones, even if no beam contradicts the map."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def test_a_ring_corridor_closes_unless_its_wheels_slipped(side: float, seed: int
 
 
 @pytest.mark.slow
-def test_of_two_rings_one_that_is_torn_is_enough() -> None:
+def test_one_torn_ring_of_two_makes_a_map_torn() -> None:
     walls, way = two_rings(11.0, 2.0)
     assert verdict(*judged(logged(walls, way, 33))) == "closed"
     assert verdict(*judged(logged(walls, way, 33, Slip(0.6, 0.06)))) == "torn"
 
 
 @pytest.mark.slow
-def test_who_never_comes_back_closes_nothing() -> None:
+def test_a_drive_without_revisits_is_open() -> None:
     walls, way = ring(14.0, 2.0, 0.0)
     share, found = judged(logged(walls, way[:3], 34))
     assert (found.closed, found.torn, found.crossed) == (0, 0, 0)
@@ -57,9 +57,11 @@ def test_who_never_comes_back_closes_nothing() -> None:
         (0.01, Revisits(crossed=5), "open"),
     ],
 )
-def test_what_speaks_for_a_loop_and_what_against(share: float, found: Revisits, says: str) -> None:
+def test_the_verdict_weighs_closed_and_torn_revisits(
+    share: float, found: Revisits, says: str
+) -> None:
     assert verdict(share, found) == says
 
 
-def test_of_nothing_nothing_is_said() -> None:
+def test_an_empty_log_has_no_revisits() -> None:
     assert revisits([]) == Revisits()

@@ -1,4 +1,4 @@
-"""Time passes for a robot in ticks; on a bench in a hurry only while somebody waits for it."""
+"""Time passes for a robot in ticks; on a stepped bench it passes only while a task waits for it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TURNS = 50
 
 
 class HandClock:
-    """A clock that whoever sleeps on it turns; while it is held, sleep does not end."""
+    """A clock that each sleep advances; while it is held, no sleep ends."""
 
     def __init__(self) -> None:
         self.time = 0.0
@@ -50,7 +50,7 @@ async def turns() -> None:
         await asyncio.sleep(0)
 
 
-async def test_time_stands_still_while_nobody_waits_for_it() -> None:
+async def test_time_stands_still_without_waiters() -> None:
     clock = HandClock()
     time = ControlLoop(clock, lambda: False, stepped=True)
     async with passing(time):
@@ -63,7 +63,7 @@ async def test_time_stands_still_while_nobody_waits_for_it() -> None:
         assert clock.time == pytest.approx(1.0, abs=AT_REST) and clock.time >= 1.0
 
 
-async def test_it_stands_still_again_when_whoever_waited_has_given_up() -> None:
+async def test_time_stands_still_again_after_the_waiter_is_cancelled() -> None:
     clock = HandClock()
     time = ControlLoop(clock, lambda: False, stepped=True)
     async with passing(time):
@@ -78,7 +78,7 @@ async def test_it_stands_still_again_when_whoever_waited_has_given_up() -> None:
         assert len(clock.slept) == slept
 
 
-async def test_what_is_waited_for_ends_the_wait() -> None:
+async def test_a_wait_ends_when_its_condition_holds() -> None:
     clock = HandClock()
     time = ControlLoop(clock, lambda: True, stepped=True)
     async with passing(time):
@@ -89,7 +89,7 @@ async def test_what_is_waited_for_ends_the_wait() -> None:
         assert clock.time == pytest.approx(began + 1, abs=1.01 * ON_THE_WAY)
 
 
-async def test_what_holds_already_takes_no_time() -> None:
+async def test_a_condition_that_already_holds_takes_no_time() -> None:
     clock = HandClock()
     time = ControlLoop(clock, lambda: True, stepped=True)
     async with passing(time):
@@ -109,7 +109,7 @@ async def test_steps_are_small_while_the_robot_moves_and_larger_at_rest() -> Non
         assert clock.slept[1:] and set(clock.slept[1:]) == {AT_REST}
 
 
-async def test_two_who_wait_share_the_time() -> None:
+async def test_two_waiters_share_the_time() -> None:
     clock, woke = HandClock(), {}
     time = ControlLoop(clock, lambda: False, stepped=True)
 
@@ -122,7 +122,7 @@ async def test_two_who_wait_share_the_time() -> None:
     assert woke == pytest.approx({1.0: 1.0, 2.0: 2.0}, abs=AT_REST)
 
 
-async def test_who_waits_again_at_once_misses_nothing_that_passes_for_another() -> None:
+async def test_a_repeated_short_wait_sees_every_step_of_a_longer_one() -> None:
     clock, seen = HandClock(), []
     time = ControlLoop(clock, lambda: True, stepped=True)
 
@@ -137,7 +137,7 @@ async def test_who_waits_again_at_once_misses_nothing_that_passes_for_another() 
     assert seen == pytest.approx(ends[: len(seen)]) and len(seen) >= 5 / ON_THE_WAY
 
 
-async def test_nobody_sees_half_a_step() -> None:
+async def test_no_waiter_observes_half_a_step() -> None:
     clock, ticks = HandClock(), []
 
     def tick() -> bool:
@@ -158,7 +158,7 @@ async def test_nobody_sees_half_a_step() -> None:
         assert waits.done() and len(clock.slept) == len(ticks)
 
 
-async def test_on_the_clock_of_a_machine_ticks_come_by_themselves() -> None:
+async def test_ticks_on_a_machine_clock_need_no_waiter() -> None:
     clock, ticks = HandClock(), asyncio.Event()
 
     def tick() -> bool:
@@ -174,7 +174,7 @@ async def test_on_the_clock_of_a_machine_ticks_come_by_themselves() -> None:
 
 
 @pytest.mark.parametrize("stepped", [True, False])
-async def test_who_waits_is_told_when_time_has_ended(stepped: bool) -> None:
+async def test_a_waiter_gets_an_error_when_time_ends(stepped: bool) -> None:
     clock = HandClock()
 
     def tick() -> bool:
@@ -190,7 +190,7 @@ async def test_who_waits_is_told_when_time_has_ended(stepped: bool) -> None:
             await time.sleep(1)  # and whoever comes later is not left waiting
 
 
-async def test_the_end_of_time_is_no_news_of_somebody_who_has_given_up() -> None:
+async def test_a_cancelled_waiter_logs_no_error_when_time_ends() -> None:
     clock = HandClock()
     clock.free.clear()
     told: list[str] = []

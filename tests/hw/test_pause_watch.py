@@ -1,4 +1,4 @@
-"""Pauses: a robot waits for late data, goes on by itself, slowly at first, and counts that."""
+"""Pauses: a robot waits for late data, resumes by itself, slowly at first, and counts pauses."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ class Watched:
             self.look(0.05)
 
 
-def test_data_that_is_young_enough_holds_nothing_up() -> None:
+def test_fresh_data_causes_no_pause() -> None:
     one = Watched()
     assert not any(one.look(age) for age in (0.05, 0.15, 0.25, 0.05))
     assert one.watch.count == 0 and one.watch.limited(FAST) == FAST
 
 
-def test_it_waits_until_three_fresh_readings_have_come() -> None:
+def test_a_pause_ends_after_three_fresh_readings() -> None:
     one = Watched()
     assert one.look(0.3) == "laser is late"
     assert one.look(0.05) and one.look(0.15, 0.05)  # the second look shows nothing new
@@ -62,7 +62,7 @@ def test_it_waits_until_three_fresh_readings_have_come() -> None:
     assert one.look(0.05) == "" and one.watch.count == 1
 
 
-def test_late_data_in_between_begins_anew() -> None:
+def test_late_data_during_a_pause_restarts_the_count() -> None:
     one = Watched()
     one.look(0.3)
     one.look(0.05)
@@ -72,7 +72,7 @@ def test_late_data_in_between_begins_anew() -> None:
     assert one.look(0.05) == ""
 
 
-def test_a_control_that_was_held_up_is_a_pause_too() -> None:
+def test_a_delayed_control_loop_counts_as_a_pause() -> None:
     one = Watched()
     one.look(0.05)
     assert one.look(0.05, 0.6) == "control is late"
@@ -81,7 +81,7 @@ def test_a_control_that_was_held_up_is_a_pause_too() -> None:
     assert one.watch.why == "" and one.watch.count == 1
 
 
-def test_it_goes_on_slowly_at_first_and_then_as_before() -> None:
+def test_the_robot_resumes_slowly_before_full_speed() -> None:
     one = Watched()
     one.pause(0.6)
     slow = one.watch.limited(FAST)
@@ -90,7 +90,7 @@ def test_it_goes_on_slowly_at_first_and_then_as_before() -> None:
     assert one.watch.limited(FAST) == FAST
 
 
-def test_pauses_that_come_often_are_told_with_the_share_of_time_and_rare_ones_are_not() -> None:
+def test_frequent_pauses_are_reported_with_their_share_of_time() -> None:
     one = Watched()
     one.pause(0.5)
     assert one.level == "seldom"
@@ -101,7 +101,7 @@ def test_pauses_that_come_often_are_told_with_the_share_of_time_and_rare_ones_ar
     assert one.level == "seldom" and one.watch.lost == 0.0
 
 
-def test_a_level_is_not_left_before_half_of_what_led_there_is_over() -> None:
+def test_the_warning_level_has_hysteresis() -> None:
     one = Watched(Liveness(warn_share=0.05, window_seconds=20))
     one.pause(0.9)
     first = one.now
@@ -115,13 +115,13 @@ def test_a_level_is_not_left_before_half_of_what_led_there_is_over() -> None:
     assert one.level == "seldom"
 
 
-def test_what_lasted_so_long_that_it_was_a_fault_is_no_pause() -> None:
+def test_a_pause_as_long_as_a_fault_is_not_counted() -> None:
     one = Watched()
     one.pause(Liveness().fault_after + 1)
     assert one.watch.count == 0 and one.watch.lost == 0.0
 
 
-def test_before_it_is_begun_it_waits_for_nothing() -> None:
+def test_a_watch_before_its_start_holds_nothing_up() -> None:
     watch = PauseWatch(Liveness(), MotionLimits())
     watch.look({"laser": 9.0}, {"laser": 9.0})
     assert watch.why == "" and watch.limited(FAST) == FAST
@@ -130,18 +130,18 @@ def test_before_it_is_begun_it_waits_for_nothing() -> None:
 class TestRecorded:
     """Beats of a robot on the bench, as `python -m tests.bench.jitter record` keeps them."""
 
-    def test_a_busy_machine_is_no_fault(self) -> None:
+    def test_a_recording_of_a_busy_machine_has_no_faults(self) -> None:
         told = replay(read_beats(BEATS / "busy.csv"), ROBOT)
         assert told.faults == ()
 
-    def test_hold_ups_of_up_to_a_second_are_pauses_and_longer_ones_are_faults(self) -> None:
+    def test_delays_up_to_a_second_are_pauses_and_longer_ones_are_faults(self) -> None:
         told = replay(read_beats(BEATS / "held-up.csv"), ROBOT)
         assert told.faults.count("link") == 3  # it was held up for two seconds three times
         assert told.pauses >= 20 and told.longest <= ROBOT.liveness.fault_after + GIVES_UP_SECONDS
 
 
 @pytest.mark.parametrize("share", [0.0, -1.0, 1.5])
-def test_a_share_that_is_none_is_refused_by_name(share: float, tmp_path: Path) -> None:
+def test_an_invalid_share_is_refused_with_its_key(share: float, tmp_path: Path) -> None:
     from tangy_profiles.errors import ProfileError
 
     text = ROBOT.file.read_text().replace("warn_share = 0.05", f"warn_share = {share}")

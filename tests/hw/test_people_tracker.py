@@ -1,4 +1,4 @@
-"""People in scans: legs are paired, people are followed with their speed, and the map is not."""
+"""People in scans: legs are paired, people are tracked with their speed, mapped points are not."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def nearest(tracks: tuple[Track, ...], person: Person) -> tuple[float, Track]:
 
 
 class TestSightings:
-    def test_two_legs_are_one_person_whose_middle_lies_between_them(self) -> None:
+    def test_two_legs_make_one_person_between_them(self) -> None:
         person = Person(5.0, 2.7, pi / 2)
         scene = drive([person])
         scan = scene.look()
@@ -68,12 +68,12 @@ class TestSightings:
         assert len(people) == 1
         assert hypot(people[0].x - 1.5, people[0].y) < 0.1
 
-    def test_a_wall_and_what_the_map_has_are_nobody(self) -> None:
+    def test_walls_and_mapped_objects_are_no_people(self) -> None:
         scan = drive([]).look()
         assert sightings(scan, unmapped=Obstacles(MAP).unmapped(STANDS, scan)) == []
 
     @pytest.mark.parametrize("far", [1.0, 2.5, 4.0])
-    def test_a_thing_as_wide_as_a_wheelchair_is_minded_as_wide_as_it_is(self, far: float) -> None:
+    def test_an_object_as_wide_as_a_wheelchair_keeps_its_width(self, far: float) -> None:
         ranges = np.full(360, inf)
         beams = np.arange(360)
         wide = np.abs((beams - 180) * 0.75 * pi / 180) < 0.3 / far
@@ -81,7 +81,7 @@ class TestSightings:
         found = sightings(Scan(-135 * pi / 180, 0.75 * pi / 180, ranges, 30.0))
         assert len(found) == 1 and found[0].half == pytest.approx(0.3, abs=0.06)
 
-    def test_the_scanners_place_on_the_robot_counts(self) -> None:
+    def test_sightings_account_for_the_place_of_the_scanner(self) -> None:
         ranges = np.full(360, inf)
         ranges[178:183] = 1.0
         (one,) = sightings(Scan(-3.14, 0.0175, ranges, 30.0), Pose(0.25, 0.1, 0.0))
@@ -91,7 +91,7 @@ class TestSightings:
 
 class TestTracks:
     @pytest.mark.parametrize("speed", [0.4, 0.8, 1.3])
-    def test_a_walker_is_followed_with_the_speed(self, speed: float) -> None:
+    def test_a_walker_is_tracked_with_the_right_speed(self, speed: float) -> None:
         person = walks(0.0, speed)
         person.x, person.y = 3.5, 2.9
         watching = Watching(drive([person]))
@@ -101,14 +101,14 @@ class TestTracks:
         assert off < 0.3 + 0.1 * speed and track.person
         assert abs(track.vx - speed) < 0.35 and abs(track.vy) < 0.35
 
-    def test_who_stands_has_no_speed_and_is_a_person_after_a_while(self) -> None:
+    def test_a_standing_person_has_no_speed(self) -> None:
         person = Person(5.2, 2.6, 0.4)
         watching = Watching(drive([person]))
         watching.watch(2.5)
         off, track = nearest(watching.tracker.tracks, person)
         assert off < 0.1 and track.speed == 0.0 and track.stood > 1.0 and track.person
 
-    def test_the_robots_own_driving_makes_nobody_move(self) -> None:
+    def test_the_motion_of_the_robot_gives_people_no_speed(self) -> None:
         person = Person(5.3, 3.4, 0.4)
         watching = Watching(drive([person]))
         watching.watch(3.0, Twist(0.4, 0.15))
@@ -116,12 +116,12 @@ class TestTracks:
         assert off < 0.15 and track.speed == 0.0
 
     @pytest.mark.parametrize("seed", [1, 2, 3])
-    def test_in_an_empty_room_there_is_nobody(self, seed: int) -> None:
+    def test_an_empty_room_has_no_person_tracks(self, seed: int) -> None:
         watching = Watching(drive([], seed))
         seen = watching.watch(12.0, Twist(0.1, 0.5))
         assert not any(track.person for tracks in seen for track in tracks)
 
-    def test_somebody_behind_somebody_is_remembered_for_a_moment(self) -> None:
+    def test_a_person_hidden_behind_another_is_remembered(self) -> None:
         person = walks(0.0, 0.8)
         person.x, person.y = 4.0, 3.3
         stands = Person(5.0, 2.2, 0.0)
@@ -141,7 +141,7 @@ class TestTracks:
             off, track = nearest(watching.tracker.tracks, person)
             assert off < 0.3 and track.age > 0.3
 
-    def test_who_turns_back_is_followed_on_and_does_not_stand(self) -> None:
+    def test_a_walker_who_turns_back_stays_tracked_as_walking(self) -> None:
         speeds = [0.0, pi]
 
         def step(person: Person, drive: Drive) -> None:
@@ -155,7 +155,7 @@ class TestTracks:
             _, track = nearest(watching.tracker.tracks, person)
             assert track.stood == 0.0 and track.age > 0.3 and track.pace > 0.25
 
-    def test_the_pace_of_who_slows_down_is_remembered(self) -> None:
+    def test_a_slowing_walker_keeps_the_recent_pace(self) -> None:
         def step(person: Person, drive: Drive) -> None:
             person.walk(0.0, 1.2 if person.gone < 1.5 else 0.4)
 
@@ -165,7 +165,7 @@ class TestTracks:
         _, track = nearest(watching.tracker.tracks, person)
         assert track.speed < 0.7 and track.pace > 0.9
 
-    def test_who_has_gone_is_forgotten(self) -> None:
+    def test_a_person_who_left_is_forgotten(self) -> None:
         person = Person(5.2, 2.6, 0.4)
         watching = Watching(drive([person]))
         watching.watch(1.5)
@@ -173,7 +173,7 @@ class TestTracks:
         watching.watch(2.0)
         assert watching.tracker.tracks == ()
 
-    def test_a_wheelchair_is_minded_at_least_as_wide_as_half_of_it(self) -> None:
+    def test_a_wheelchair_is_tracked_near_its_middle(self) -> None:
         chair = walks(0.0, 0.5)
         chair.x, chair.y, chair.radius = 4.2, 2.8, CHAIR
         watching = Watching(drive([chair]))

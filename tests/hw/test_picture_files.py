@@ -1,4 +1,4 @@
-"""Pictures of all kinds are read; what is none is refused in one sentence that names it."""
+"""Pictures of all kinds are read; other files are refused in one sentence that names them."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def bad_pictures(folder: Path) -> dict[str, Path]:
 
 
 @pytest.mark.slow
-def test_what_is_no_picture_is_said_in_one_sentence(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_file_that_is_no_picture_is_refused_in_one_sentence(tangy: Tangy, tmp_path: Path) -> None:
     for says, path in bad_pictures(tmp_path).items():
         done = tangy("read-card", path, "--json")
         assert (done.returncode, done.stdout) == (2, ""), path
@@ -54,7 +54,7 @@ def test_what_is_no_picture_is_said_in_one_sentence(tangy: Tangy, tmp_path: Path
             read_picture(path)
 
 
-def test_what_can_be_read_is_read_beside_what_cannot(tangy: Tangy, tmp_path: Path) -> None:
+def test_good_pictures_are_read_beside_bad_ones(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 1, "--png", tmp_path, "--dpi", 60)
     (tmp_path / "text.png").write_text("hello")
     files = [tmp_path / "text.png", tmp_path / "card-042.png", tmp_path / "none.png"]
@@ -81,7 +81,7 @@ def card(tangy: Tangy, tmp_path: Path) -> Image.Image:
         ("RGB", "a.jpg", "is PNG inside; name it .png"),
     ],
 )
-def test_what_no_camera_took_so_is_refused_where_colours_count(
+def test_pictures_without_true_colours_are_refused_for_cards(
     kind: str, file: str, says: str, card: Image.Image, tangy: Tangy, tmp_path: Path
 ) -> None:
     path = tmp_path / file
@@ -110,7 +110,7 @@ def test_a_card_is_read_from_colours_of_any_kind(
 
 
 @pytest.mark.slow
-def test_of_several_cards_in_a_picture_none_is_read_or_judged(tangy: Tangy, tmp_path: Path) -> None:
+def test_no_card_is_read_if_a_picture_shows_several(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 2, "--png", tmp_path, "--dpi", 60)
     one, other = (Image.open(tmp_path / f"card-04{last}.png") for last in (2, 3))
     both = Image.new("RGB", (one.width * 2, one.height), (120, 90, 60))
@@ -132,7 +132,7 @@ def test_of_several_cards_in_a_picture_none_is_read_or_judged(tangy: Tangy, tmp_
 
 
 @pytest.mark.slow
-def test_what_was_read_is_drawn(tangy: Tangy, tmp_path: Path) -> None:
+def test_the_reading_is_drawn_into_the_picture(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 1, "--png", tmp_path, "--dpi", 60)
     done = tangy("read-card", tmp_path / "card-042.png", "--draw", tmp_path / "drawn")
     assert done.returncode == 0 and "card 42, 0 marked" in done.stdout
@@ -159,7 +159,7 @@ def test_pictures_of_one_card_are_read_together(tangy: Tangy, tmp_path: Path) ->
     assert refused.returncode == 2 and refused.stderr.count("\n") == 1
 
 
-def test_a_picture_is_turned_as_it_was_taken(tmp_path: Path) -> None:
+def test_a_picture_is_rotated_by_its_exif_orientation(tmp_path: Path) -> None:
     picture = Image.new("RGB", (100, 70), (255, 0, 0))
     exif = picture.getexif()
     exif[0x0112] = 6  # the camera was held upright
@@ -169,7 +169,7 @@ def test_a_picture_is_turned_as_it_was_taken(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_printed_picture_is_read_and_its_state_told(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_printed_card_is_read_with_its_state(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 42, "--count", 2, "--png", tmp_path, "--dpi", 60)
     files = [tmp_path / "card-042.png", tmp_path / "card-043.png"]
     done = tangy("read-card", *files, "--json")
@@ -190,7 +190,7 @@ def test_a_printed_picture_is_read_and_its_state_told(tangy: Tangy, tmp_path: Pa
 
 
 @pytest.mark.slow
-def test_a_labelled_folder_is_counted(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_labelled_folder_is_evaluated(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 2, "--png", tmp_path, "--dpi", 60)
     labels = json.loads(tangy("read-card", *tmp_path.glob("*.png"), "--json").stdout)
     labels[0]["marked"] = [[0, 0]]
@@ -207,7 +207,7 @@ def test_a_labelled_folder_is_counted(tangy: Tangy, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_pictures_with_a_label_beside_them_are_counted(tangy: Tangy, tmp_path: Path) -> None:
+def test_pictures_with_label_files_are_evaluated(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 3, "--png", tmp_path, "--dpi", 60)
     (tmp_path / "cards.json").unlink()
     seen = json.loads(tangy("read-card", tmp_path / "card-007.png", "--json").stdout)[0]
@@ -222,7 +222,7 @@ def test_pictures_with_a_label_beside_them_are_counted(tangy: Tangy, tmp_path: P
 
 
 @pytest.mark.slow
-def test_what_a_camera_saw_is_confirmed_and_counted(tangy: Tangy, tmp_path: Path) -> None:
+def test_captured_pictures_are_confirmed_and_evaluated(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 7, "--count", 2, "--png", tmp_path / "in", "--dpi", 60)
     kept = tmp_path / "kept"
     done = tangy("capture", kept, "--from", tmp_path / "in", "--cards", "--seconds", 60)
@@ -236,7 +236,7 @@ def test_what_a_camera_saw_is_confirmed_and_counted(tangy: Tangy, tmp_path: Path
 
 
 @pytest.mark.slow
-def test_what_a_state_hangs_on_is_not_called_out_of_view(
+def test_a_hidden_cell_that_decides_the_state_is_reported(
     card: Image.Image, tangy: Tangy, tmp_path: Path
 ) -> None:
     wide, high = card.size

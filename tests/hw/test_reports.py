@@ -1,4 +1,4 @@
-"""What devices report together: of several links to a robot, the one that is worst off."""
+"""The common report of devices: the worst of several links to a robot counts."""
 
 from __future__ import annotations
 
@@ -41,18 +41,18 @@ def told(*links: Link) -> Reading:
 
 
 @pytest.mark.parametrize("bad", [Link(STALE), Link(OK, 1.0), Link(ERROR)])
-def test_the_robot_stands_when_any_link_that_it_drives_by_is_lost(bad: Link) -> None:
+def test_the_robot_stops_if_it_loses_a_link_needed_for_driving(bad: Link) -> None:
     for links in ([bad, Link()], [Link(), bad], [Link(), bad, Link(WARN)]):
         assert told(*links) == bad.reading()
         assert watched(*links).hazard().startswith(ROBOT.devices["link"].label)
     assert watched(Link(), Link()).hazard() == ""
 
 
-def test_of_links_that_are_well_the_older_data_counts() -> None:
+def test_the_oldest_data_counts_among_healthy_links() -> None:
     assert told(Link(OK, 0.1), Link(OK, 0.2), Link(OK, 0.0)).age == 0.2
 
 
-def test_a_link_that_only_the_voice_uses_does_not_hold_the_robot_up() -> None:
+def test_a_link_of_the_voice_alone_does_not_stop_the_robot() -> None:
     assert told(Link(), Link(STALE, 9.0, drives=False)) == Link().reading()
     assert watched(Link(), Link(STALE, 9.0, drives=False)).hazard() == ""
 
@@ -67,7 +67,7 @@ def test_a_link_that_only_the_voice_uses_does_not_hold_the_robot_up() -> None:
         ({"stop_button": BASE, "laser": VOICE}, {BASE: True, VOICE: True}),
     ],
 )
-async def test_a_link_is_driven_by_when_a_device_is_that_the_robot_drives_by(
+async def test_a_link_is_needed_for_driving_if_one_of_its_devices_is(
     devices: dict[str, str], drives: dict[str, bool]
 ) -> None:
     wiring = Wiring(ROBOT, load_activity("bingo"), MachineClock())

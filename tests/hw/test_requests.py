@@ -1,4 +1,4 @@
-"""Who asks for help: keys, buttons and messages, each as it comes, and in whose turn."""
+"""Requests for help from keys, buttons and messages, in the order of their arrival."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def seats(source: RequestSource) -> list[int]:
 
 
 class TestKeyboard:
-    def test_a_number_asks_and_pressed_again_takes_that_back(self) -> None:
+    def test_a_number_key_toggles_a_request(self) -> None:
         keys = Keyboard("keyboard", 4, PEOPLE)
         assert [keys.press(key) for key in "3159x "] == [True, True, False, False, False, False]
         assert [(ask.seat, ask.person, ask.sure) for ask in keys.asking] == [
@@ -36,7 +36,7 @@ class TestKeyboard:
         assert keys.asking == ()
         assert (keys.reading().device, keys.reading().state) == ("requests", OK)
 
-    async def test_each_change_is_given_once(self) -> None:
+    async def test_each_change_is_reported_once(self) -> None:
         keys = Keyboard("keyboard", 4)
         given: list[list[int]] = []
 
@@ -70,12 +70,12 @@ class TestButtons:
             parts = [PRESS_2[place : place + size] for place in range(0, len(PRESS_2), size)]
             assert [code for part in parts for code in read.pressed(part)] == [3]
 
-    def test_what_was_lost_is_not_guessed(self) -> None:
+    def test_key_presses_in_a_dropped_packet_are_ignored(self) -> None:
         read = KeyEventParser()
         content = events((0, 3, 0), (1, 2, 1), (0, 0, 0), (1, 4, 1), (0, 0, 0))
         assert read.pressed(content) == [4]
 
-    async def test_a_box_asks_is_unplugged_and_comes_back(self, tmp_path: Path) -> None:
+    async def test_a_button_box_survives_being_unplugged(self, tmp_path: Path) -> None:
         path = tmp_path / "event7"
         os.mkfifo(path)
         box = ButtonBox("buttons", str(path), 4, PEOPLE)
@@ -109,7 +109,7 @@ class TestButtons:
         os.close(descriptor)
         assert told[0] == "The button box was unplugged. It is waited for."
 
-    async def test_a_box_that_is_not_there_is_waited_for(self, tmp_path: Path) -> None:
+    async def test_a_missing_button_box_is_reported_and_awaited(self, tmp_path: Path) -> None:
         box = ButtonBox("buttons", str(tmp_path / "event9"), 4)
         waiting: asyncio.Future[str] = asyncio.get_running_loop().create_future()
         box.tell = waiting.set_result
@@ -117,7 +117,7 @@ class TestButtons:
             said = await asyncio.wait_for(waiting, 20)
         assert said.startswith("The button box is not there (No such file or directory)")
 
-    def test_boxes_are_found_by_what_the_system_says(self, tmp_path: Path) -> None:
+    def test_button_boxes_are_found_in_the_device_files_of_the_system(self, tmp_path: Path) -> None:
         for name, title, keys in (("event4", "Number Pad", "8000 0 fe"), ("event11", "Lid", "0")):
             (tmp_path / name / "device" / "capabilities").mkdir(parents=True)
             (tmp_path / name / "device" / "name").write_text(f"{title}\n")
@@ -149,14 +149,16 @@ class TestMessages:
             ("", b"1", []),
         ],
     )
-    def test_what_a_message_means(self, topic: str, payload: bytes, asks: list[int]) -> None:
+    def test_a_message_sets_or_clears_a_request(
+        self, topic: str, payload: bytes, asks: list[int]
+    ) -> None:
         source = Topic("mqtt://host/tangy/requests", 4, PEOPLE)
         source.hear(f"tangy/requests/{topic}", payload)
         assert seats(source) == asks
         source.hear(f"tangy/requests/{topic}", b'{"action": "long"}')
         assert seats(source) == []
 
-    def test_what_is_not_understood_is_told_once(self) -> None:
+    def test_an_unreadable_message_is_reported_once(self) -> None:
         source, told = Topic("mqtt://host/tangy/requests", 4), list[str]()
         source.tell = told.append
         for _ in range(3):
@@ -167,7 +169,7 @@ class TestMessages:
             "tangy/requests/2 says neither yes nor no; it is not heeded.",
         ]
 
-    def test_a_password_is_not_shown(self) -> None:
+    def test_the_name_of_a_topic_leaves_out_its_password(self) -> None:
         source = Topic("mqtts://staff:secret@host/t", 4)
         assert source.name == "mqtt://host:8883/t"
 
@@ -191,7 +193,7 @@ class TestNames:
             ("signs:0", "corners of the table"),
         ],
     )
-    def test_what_cannot_be_used_is_refused_in_a_sentence(self, name: str, word: str) -> None:
+    def test_an_invalid_source_is_refused_in_one_sentence(self, name: str, word: str) -> None:
         with pytest.raises(RequestError, match=word) as refused:
             open_requests(name, load_room(), PEOPLE)
         assert "\n" not in str(refused.value)

@@ -36,13 +36,13 @@ def robot_with(folder: Path, driver: str) -> Robot:
         ('{ kind = "signs", at = "/dev/video2" }', "signs:/dev/video2", ()),
     ],
 )
-def test_it_is_named_as_on_the_command_line(
+def test_the_file_names_a_source_like_the_command_line(
     driver: str, name: str, corners: object, tmp_path: Path
 ) -> None:
     assert requests_named(robot_with(tmp_path, driver)) == (name, corners)
 
 
-def test_a_film_lies_beside_the_file(tmp_path: Path) -> None:
+def test_the_path_of_a_film_is_relative_to_the_file(tmp_path: Path) -> None:
     robot = robot_with(tmp_path, '{ kind = "signs", at = "signs.avi" }')
     assert requests_named(robot) == (f"signs:{tmp_path / 'signs.avi'}", ())
 
@@ -58,9 +58,7 @@ def test_a_film_lies_beside_the_file(tmp_path: Path) -> None:
         ('{ kind = "signs", at = "0", table = "1,2,3" }', "table must be eight numbers"),
     ],
 )
-def test_what_is_named_wrongly_is_refused_by_its_place(
-    driver: str, problem: str, tmp_path: Path
-) -> None:
+def test_a_wrong_source_is_refused_with_its_key(driver: str, problem: str, tmp_path: Path) -> None:
     with pytest.raises(RequestError) as refused:
         requests_named(robot_with(tmp_path, driver))
     assert str(refused.value).startswith("ours.toml: drivers.requests")
@@ -83,7 +81,7 @@ def test_corners_are_eight_numbers(text: str) -> None:
         ('{ kind = "mqtt", at = "mqtt://127.0.0.1:1/x" }', False, "cannot be reached"),
     ],
 )
-async def test_a_trial_says_whether_it_is_there(
+async def test_a_trial_reports_whether_the_source_works(
     driver: str, absent: bool, told: str, tmp_path: Path
 ) -> None:
     found = await try_robot(robot_with(tmp_path, driver), load_activity("bingo"), {}, seconds=0.2)

@@ -1,4 +1,4 @@
-"""The lines of the robot process: what is answered, and that everything is."""
+"""The lines of the robot process, and the answer to each of them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from tests.support.waiting import until
 
 
 class Spoken:
-    """A robot process without a process: it is given lines, and `said` is what it says."""
+    """A robot process inside the test: it takes lines, and `said` collects its answers."""
 
     def __init__(self) -> None:
         self.parts = ToldBody()
@@ -64,7 +64,7 @@ async def spoken() -> AsyncIterator[Spoken]:
         await one.robot.close()
 
 
-async def test_what_is_called_off_before_it_has_begun_is_answered() -> None:
+async def test_a_command_cancelled_before_its_start_is_answered() -> None:
     async with spoken() as one:
         await one.take(id=1, do="go", to=[1, 1, 0])
         await one.take(id=2, do="cancel", why="something is wrong")
@@ -73,7 +73,7 @@ async def test_what_is_called_off_before_it_has_begun_is_answered() -> None:
         assert (answer["failed"], answer["broken"]) == ("something is wrong", True)
 
 
-async def test_what_is_called_off_later_is_answered_once() -> None:
+async def test_a_cancelled_command_is_answered_once() -> None:
     async with spoken() as one:
         await one.take(id=1, do="wait", seconds=60)
         await until(lambda: one.robot.passing.waiting)
@@ -82,7 +82,7 @@ async def test_what_is_called_off_later_is_answered_once() -> None:
         assert sorted(said["id"] for said in one.said) == [1, 2]
 
 
-async def test_stops_are_let_go_by_those_who_asked_for_them() -> None:
+async def test_a_stop_is_released_only_by_its_owner() -> None:
     async with spoken() as one:
         await one.take(do="stop", why="staff stopped it")
         await one.take(do="stop", why="base-runaway", by="fault")
@@ -93,7 +93,7 @@ async def test_stops_are_let_go_by_those_who_asked_for_them() -> None:
         assert one.state().stopped == one.state().hazard == ""
 
 
-async def test_a_program_that_hangs_has_everything_broken_off() -> None:
+async def test_a_hanging_program_cancels_every_command() -> None:
     with (
         patch.object(robots, "HAZARD_SECONDS", 0.1),
         patch.object(process, "SILENT_SECONDS", 0.3),
@@ -108,7 +108,7 @@ async def test_a_program_that_hangs_has_everything_broken_off() -> None:
             assert one.state().stopped == one.state().hazard == ""
 
 
-async def test_how_often_data_comes_is_told_as_far_as_somebody_counts() -> None:
+async def test_the_state_reports_the_rates_that_are_measured() -> None:
     async with spoken() as one:
         assert {reading.rate for reading in one.state().health} == {None}
         await asyncio.sleep(FIRST + 0.1)
@@ -119,7 +119,7 @@ async def test_how_often_data_comes_is_told_as_far_as_somebody_counts() -> None:
         assert rates["voice"] is None
 
 
-async def test_what_has_failed_of_the_control_is_told_for_good() -> None:
+async def test_a_failure_of_the_control_loop_is_reported_for_good() -> None:
     async with spoken() as one:
         assert one.state().failed == ""
         with patch.object(one.robot.navigator, "tick", side_effect=ZeroDivisionError):
@@ -169,7 +169,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize("line", WRONG, ids=lambda line: line[:40].decode("latin-1"))
-async def test_a_line_that_cannot_be_heeded_is_answered_and_ends_nothing(line: bytes) -> None:
+async def test_an_invalid_line_is_answered_with_an_error(line: bytes) -> None:
     async with spoken() as one:
         await one.process.take(line)
         await until(lambda: one.said)
@@ -198,7 +198,7 @@ KEYS = ("id", "why", "by", "forward", "turn", "to", "at", "seconds", "text", "pi
     do=st.sampled_from(DOES) | JSON,
     what=st.dictionaries(st.sampled_from(KEYS), JSON),
 )
-async def test_whatever_a_line_holds_the_process_lives(do: Any, what: dict[str, Any]) -> None:
+async def test_no_content_of_a_line_ends_the_process(do: Any, what: dict[str, Any]) -> None:
     async with spoken() as one:
         await one.take(**{**what, "do": do})
         await one.take(id="last", do="stop")
@@ -207,7 +207,7 @@ async def test_whatever_a_line_holds_the_process_lives(do: Any, what: dict[str, 
 
 
 @pytest.mark.parametrize("id", [[1], None, {"a": 1}])
-async def test_a_stop_is_heeded_whatever_else_is_wrong_with_its_line(id: Any) -> None:
+async def test_a_stop_takes_effect_despite_other_errors_in_its_line(id: Any) -> None:
     async with spoken() as one:
         await one.take(id=id, do="stop", why=["a hand"], by=3)
         assert one.state().stopped == "stopped" and one.parts.told[0] == "stop"
@@ -216,7 +216,7 @@ async def test_a_stop_is_heeded_whatever_else_is_wrong_with_its_line(id: Any) ->
         assert one.state().stopped == ""
 
 
-async def test_a_second_line_of_an_id_that_is_under_way_is_refused() -> None:
+async def test_a_second_line_with_a_running_id_is_refused() -> None:
     async with spoken() as one:
         await one.take(id=1, do="wait", seconds=60)
         await one.take(id=1, do="wait", seconds=0)
@@ -239,14 +239,14 @@ async def test_the_id_of_a_command_goes_from_its_line_to_the_driver_and_back(
 
 
 @pytest.mark.parametrize("asked", (*IMMEDIATE_REQUESTS, *LASTING_REQUESTS))
-async def test_every_request_of_the_closed_set_is_known_to_the_process(asked: Request) -> None:
+async def test_the_process_knows_every_request(asked: Request) -> None:
     async with spoken() as one:
         await one.take(id=1, do=asked)
         await until(lambda: bool(one.said))
         assert "cannot do" not in json.dumps(one.said)
 
 
-async def test_a_device_state_that_there_is_not_is_refused_and_never_taken_for_well() -> None:
+async def test_an_unknown_device_state_is_an_error() -> None:
     async with spoken() as one:
         await one.take(id=1, do="fail", device="laser", state="FINE")
         await until(lambda: bool(one.said))
@@ -276,7 +276,7 @@ JSON_PARTS = (b"{", b"}", b"[", b"]", b'"', b":", b",", b"NaN", b"1e999", b"null
 
 
 @pytest.mark.slow
-async def test_ten_thousand_lines_of_nonsense_end_nothing_and_drive_nothing() -> None:
+async def test_ten_thousand_invalid_lines_neither_end_the_process_nor_drive() -> None:
     rng = random.Random(5)
     async with spoken() as one:
         for number in range(10_000):

@@ -1,4 +1,4 @@
-"""The program's end of the robot process, whatever that process does or does not."""
+"""The program's end of the link to the robot process, however that process misbehaves."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def linked(monkeypatch: pytest.MonkeyPatch, does: str) -> RobotLink:
 
 
 class Pipe:
-    """A pipe that nobody reads until `read`, and an outbox that writes to it."""
+    """A pipe that stays unread until `read`, and an outbox that writes to it."""
 
     def __init__(self) -> None:
         self.out, into = os.pipe()
@@ -67,7 +67,7 @@ class TestOutbox:
         assert pipe.read() == lines
         assert not pipe.outbox.put("too late")
 
-    def test_nobody_waits_for_a_reader_and_what_is_worth_nothing_later_is_left_out(self) -> None:
+    def test_a_full_pipe_blocks_no_writer_and_drops_beats(self) -> None:
         pipe = Pipe()
         pipe.outbox.put("x" * 2 * PIPE)
         assert holds(lambda: pipe.outbox.writing)
@@ -78,13 +78,13 @@ class TestOutbox:
         assert time.monotonic() - began < AT_ONCE
         assert pipe.read()[1:] == ["stop"]
 
-    def test_a_beat_is_written_where_nothing_waits(self) -> None:
+    def test_a_beat_is_written_into_an_empty_queue(self) -> None:
         pipe = Pipe()
         pipe.outbox.beat("beat")
         assert holds(lambda: not pipe.outbox.lines)
         assert pipe.read() == ["beat"]
 
-    def test_without_a_reader_it_ends(self) -> None:
+    def test_the_outbox_ends_without_a_reader(self) -> None:
         pipe = Pipe()
         os.close(pipe.out)
         pipe.outbox.put("to nobody")
@@ -94,9 +94,7 @@ class TestOutbox:
 
 
 class TestHungProcess:
-    def test_whoever_stops_it_never_waits_and_it_is_told_no_beats(
-        self, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_a_stop_to_a_hung_process_never_waits(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(client, "SILENT_SECONDS", 0.1)
         monkeypatch.setattr(client, "BEAT_SECONDS", 0.005)
         link = linked(monkeypatch, "time.sleep(60)")
@@ -122,7 +120,7 @@ class TestHungProcess:
 
 class TestEnd:
     @pytest.mark.slow
-    def test_what_is_asked_for_while_it_ends_is_answered_once(
+    def test_requests_to_an_ending_process_are_answered_once(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         for _ in range(3):
@@ -139,7 +137,7 @@ class TestEnd:
     @pytest.mark.parametrize(
         ("does", "how"), [("sys.exit(3)", "status 3"), ("os.kill(os.getpid(), 9)", "signal 9")]
     )
-    def test_one_that_ends_while_it_is_switched_on_says_how(
+    def test_a_process_that_ends_at_the_start_reports_its_status(
         self, monkeypatch: pytest.MonkeyPatch, does: str, how: str
     ) -> None:
         monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", "import os, sys; " + does))
@@ -149,7 +147,7 @@ class TestEnd:
         assert how in link.silent and link.pid is None
         link.close()
 
-    def test_lines_of_it_that_make_no_sense_are_left_out(
+    def test_nonsense_lines_from_the_process_are_ignored(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         does = (
@@ -169,7 +167,7 @@ STUBBORN = "import signal, sys, time; signal.signal(signal.SIGTERM, signal.SIG_I
 
 
 class TestCalledOff:
-    """A process that is still switching the robot on ends when that is called off."""
+    """A process that is still opening the robot ends when the opening is cancelled."""
 
     def opening(
         self, monkeypatch: pytest.MonkeyPatch, does: str
@@ -194,7 +192,7 @@ class TestCalledOff:
         return link, cancellation, done
 
     @pytest.mark.parametrize("does", [SILENT, STUBBORN], ids=["hears TERM", "hears nothing"])
-    def test_nobody_waits_for_it_any_more_and_it_is_ended(
+    def test_cancelling_an_opening_ends_the_process(
         self, monkeypatch: pytest.MonkeyPatch, does: str
     ) -> None:
         monkeypatch.setattr(client, "CALLED_OFF_SECONDS", 0.2)
@@ -207,7 +205,7 @@ class TestCalledOff:
             done.result(5)
         assert holds(lambda: worker.pid is None)
 
-    def test_nothing_is_started_afterwards(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_a_cancelled_opening_starts_no_process(self, monkeypatch: pytest.MonkeyPatch) -> None:
         started: list[object] = []
         monkeypatch.setattr("subprocess.Popen", lambda *a, **b: started.append(a))
         cancellation = Cancellation()
@@ -216,17 +214,15 @@ class TestCalledOff:
             RobotLink(SETUP, cancellation=cancellation).start()
         assert started == []
 
-    def test_one_that_was_closed_is_not_started_again(
-        self, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        """Whoever mends a fault on a thread may be about to, when the program is left."""
+    def test_a_closed_link_is_not_restarted(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A recovery thread may be about to restart the process when the user quits."""
         link = linked(monkeypatch, "time.sleep(60)")
         link.close()
         with pytest.raises(DeviceError, match="switched off"):
             link.restart()
         assert link.pid is None
 
-    def test_it_says_what_is_being_started(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_the_link_reports_which_part_is_starting(self, monkeypatch: pytest.MonkeyPatch) -> None:
         does = "import sys, time; " + "".join(
             f'print(\'{{"starts": "{part}"}}\'); ' for part in ("laser", "voice", "voice")
         )
@@ -236,7 +232,7 @@ class TestCalledOff:
         cancellation.starts("voice", 1, 4)
         assert (cancellation.parts[-1], cancellation.done) == ("voice", (1, 4))
 
-    def test_one_that_is_on_is_not_called_off(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_a_completed_opening_is_not_cancelled(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", READY + "time.sleep(60)"))
         cancellation = Cancellation()
         link = RobotLink(SETUP, cancellation=cancellation)

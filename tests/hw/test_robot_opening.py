@@ -1,4 +1,4 @@
-"""A robot that is being switched on is let go of as soon as the program gives up."""
+"""The opening of a robot is abandoned as soon as the program ends."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tangy_hw.robot_process.startup import switched_on
 
 
 class Slow:
-    """A robot whose devices answer when they are let."""
+    """A robot whose devices answer when the test allows it."""
 
     def __init__(self, error: DeviceError | None = None) -> None:
         self.answers = asyncio.Event()
@@ -68,7 +68,7 @@ def opening(robot: Slow, said: asyncio.StreamReader) -> Any:
     return switched_on(cast(RobotRuntime, robot), said)
 
 
-async def test_a_program_that_has_gone_gets_nothing_switched_on(armed: list[float]) -> None:
+async def test_no_robot_is_opened_for_a_program_that_has_ended(armed: list[float]) -> None:
     robot = Slow()
     async with asyncio.timeout(5), opening(robot, lines(b'{"beat":1}', end=True)) as said:
         assert said is None
@@ -76,7 +76,7 @@ async def test_a_program_that_has_gone_gets_nothing_switched_on(armed: list[floa
     assert armed == [startup.GIVE_UP_SECONDS]
 
 
-async def test_a_program_that_goes_meanwhile_has_it_let_go_of(armed: list[float]) -> None:
+async def test_an_opening_is_abandoned_if_the_program_ends(armed: list[float]) -> None:
     robot, pipe = Slow(), lines(b'{"beat":1}')
     asyncio.get_running_loop().call_later(0.02, pipe.feed_eof)
     async with asyncio.timeout(5), opening(robot, pipe) as said:
@@ -85,7 +85,7 @@ async def test_a_program_that_goes_meanwhile_has_it_let_go_of(armed: list[float]
     assert len(armed) == 1
 
 
-async def test_one_that_is_on_just_as_the_program_goes_is_switched_off(
+async def test_a_robot_that_opens_as_the_program_ends_is_closed(
     armed: list[float],
 ) -> None:
     robot, pipe = Slow(), lines()
@@ -97,7 +97,7 @@ async def test_one_that_is_on_just_as_the_program_goes_is_switched_off(
     assert robot.did[-1] in ("is let go of", "is switched off")
 
 
-async def test_what_the_program_says_meanwhile_is_not_lost(armed: list[float]) -> None:
+async def test_lines_sent_during_the_opening_are_kept(armed: list[float]) -> None:
     stop = b'{"do":"stop","why":"staff"}'
     robot, pipe = Slow(), lines(b'{"beat":1}', stop, b'{"beat":2}')
     asyncio.get_running_loop().call_later(0.02, robot.answers.set)
@@ -110,7 +110,7 @@ async def test_what_the_program_says_meanwhile_is_not_lost(armed: list[float]) -
     assert armed == []
 
 
-async def test_what_is_wrong_with_a_device_is_said(armed: list[float]) -> None:
+async def test_a_device_error_during_the_opening_is_raised(armed: list[float]) -> None:
     robot = Slow(DeviceError("The arms have no cable."))
     robot.answers.set()
     with pytest.raises(DeviceError, match="no cable"):

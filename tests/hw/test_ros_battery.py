@@ -1,4 +1,4 @@
-"""A battery behind ROS, from the message to what staff are told; and the robots that ship."""
+"""A battery behind ROS, from the message to the fault; and the robots that ship."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def state(percentage: float | None, status: int = 2, **more: Any) -> dict[str, A
 
 
 class TestBattery:
-    async def test_it_tells_how_full_it_is_and_whether_it_is_charged(self) -> None:
+    async def test_the_battery_reports_its_charge_and_whether_it_is_charging(self) -> None:
         async with linked() as (server, bridge, now):
             battery = RosBattery(bridge)
             await battery.start()
@@ -52,7 +52,7 @@ class TestBattery:
             assert battery.reading().age == pytest.approx(40)
             await battery.close()
 
-    def test_what_is_counted_to_a_hundred_or_not_at_all_is_a_share_all_the_same(self) -> None:
+    def test_a_charge_in_percent_or_from_capacity_becomes_a_share(self) -> None:
         assert charge_of(state(43.0)) == pytest.approx(0.43)
         assert charge_of(state(None, charge=1.3)) == pytest.approx(0.5)
         with pytest.raises((ValueError, TypeError)):
@@ -63,7 +63,7 @@ class TestBattery:
         [(0.5, False, ""), (0.15, False, "battery-low"), (0.15, True, ""),
          (0.05, False, "battery-flat"), (0.05, True, "")],
     )  # fmt: skip
-    def test_a_battery_low_and_a_flat_one_are_faults_of_their_own(
+    def test_a_low_and_a_flat_battery_are_separate_faults(
         self, charge: float, charging: bool, code: str
     ) -> None:
         book = load_faults(load_robot("turtlebot4"))
@@ -71,7 +71,7 @@ class TestBattery:
         found = [one.rule.code for one in diagnose(book, evidence)]
         assert found == ([code] if code else [])
 
-    def test_a_robot_without_a_battery_that_tells_has_no_such_faults(self) -> None:
+    def test_a_robot_without_a_battery_sensor_has_no_battery_faults(self) -> None:
         codes = {rule.code for rule in load_faults(load_robot()).rules}
         assert not codes & {"battery-low", "battery-flat"}
 
@@ -91,12 +91,12 @@ class TestShipped:
             else:
                 assert opened.name == device
 
-    def test_its_camera_is_a_topic_and_it_drives_no_faster_than_it_is_made_for(
-        self, name: str
-    ) -> None:
+    def test_a_shipped_robot_has_a_ros_camera_and_a_safe_maximum_speed(self, name: str) -> None:
         robot = load_robot(name)
         assert find_camera(robot.devices["camera"].source).live
         assert MotionLimits.of(robot).max_speed <= 0.306  # as far as a Create 3 lets itself go
 
-    def test_it_has_the_postures_of_the_activity(self, name: str, activity: Activity) -> None:
+    def test_a_shipped_robot_has_the_postures_of_the_activity(
+        self, name: str, activity: Activity
+    ) -> None:
         load_robot(name).check(activity)

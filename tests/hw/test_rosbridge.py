@@ -17,7 +17,7 @@ from tests.support.waiting import until
 
 
 class TestTopics:
-    async def test_what_is_published_is_heard_by_those_who_subscribed_alone(self) -> None:
+    async def test_only_subscribers_receive_a_message(self) -> None:
         async with linked() as (server, bridge, _):
             heard: list[Any] = []
             bridge.subscribe("odom", "nav_msgs/Odometry", heard.append)
@@ -27,7 +27,7 @@ class TestTopics:
             await until(lambda: bool(heard))
             assert heard == [{"n": [1.0, None]}]
 
-    async def test_what_a_client_publishes_reaches_the_simulator_and_other_clients(self) -> None:
+    async def test_a_published_message_reaches_the_simulator_and_other_clients(self) -> None:
         async with linked() as (server, bridge, _):
             other, mine, theirs = Rosbridge(server.url), list[Any](), list[Any]()
             await other.start()
@@ -40,7 +40,7 @@ class TestTopics:
             await other.close()
             assert mine == theirs == [{"data": "hello"}]
 
-    async def test_nothing_is_heard_after_unsubscribing(self) -> None:
+    async def test_no_message_arrives_after_unsubscribing(self) -> None:
         async with linked() as (server, bridge, _):
             heard: list[Any] = []
             bridge.subscribe("/odom", "nav_msgs/Odometry", heard.append)
@@ -48,7 +48,7 @@ class TestTopics:
             bridge.unsubscribe("/odom", heard.append)
             await until(lambda: not server.is_subscribed("/odom"))
 
-    async def test_a_throttled_topic_comes_as_seldom_as_was_wished(self) -> None:
+    async def test_a_throttled_topic_keeps_its_interval(self) -> None:
         now = 0.0
         server = RosbridgeServer(clock=lambda: now)
         await server.start()
@@ -78,7 +78,7 @@ class TestTopics:
 
 
 class TestServices:
-    async def test_what_was_published_before_an_answer_arrives_before_it(self) -> None:
+    async def test_messages_published_before_an_answer_arrive_first(self) -> None:
         """A bench in lock-step relies on it: after `advance` all of the step's data is there."""
         async with linked() as (server, bridge, _):
             heard: list[int] = []
@@ -95,7 +95,7 @@ class TestServices:
             assert answer == {"sent": 200, "by": 0.1}
             assert heard == list(range(200))
 
-    async def test_who_fails_says_why_and_who_is_silent_is_not_waited_for(self) -> None:
+    async def test_a_failing_service_gives_its_reason_and_a_silent_one_times_out(self) -> None:
         async def fails(_: Any) -> dict[str, Any]:
             raise RuntimeError("the motor is hot")
 
@@ -113,7 +113,7 @@ class TestServices:
             with pytest.raises(DeviceError, match=r"/sleeps did not answer within 0\.05 s"):
                 await soon(bridge.call("/sleeps", {}, 0.05))
 
-    async def test_who_waits_for_an_answer_is_told_of_the_loss(self) -> None:
+    async def test_a_lost_link_ends_a_pending_call(self) -> None:
         called = asyncio.Event()
 
         async def sleeps(_: Any) -> dict[str, Any]:
@@ -131,7 +131,7 @@ class TestServices:
 
 
 class TestActions:
-    async def test_a_goal_feeds_back_and_succeeds_or_not(self) -> None:
+    async def test_a_goal_gives_feedback_and_a_result(self) -> None:
         async def drives(goal: Any, feedback: Any) -> dict[str, Any]:
             for left in (2, 1):
                 feedback({"left": left})
@@ -149,7 +149,7 @@ class TestActions:
             with pytest.raises(DeviceError, match="/go did not succeed: too far"):
                 await soon(bad.over)
 
-    async def test_a_goal_that_is_cancelled_ends_at_the_robot(self) -> None:
+    async def test_a_cancelled_goal_ends_at_the_robot(self) -> None:
         began, ended = asyncio.Event(), asyncio.Event()
 
         async def drives(_goal: Any, _feedback: Any) -> dict[str, Any]:
@@ -180,7 +180,7 @@ class TestActions:
             (True, {"result": False, "status": 0, "values": "no status"}, "was cancelled"),
         ],
     )
-    async def test_bridges_that_tell_the_end_otherwise_are_understood(
+    async def test_other_formats_of_action_results_are_understood(
         self, cancels: bool, answer: dict[str, Any], error: str
     ) -> None:
         raw = Raw()

@@ -75,7 +75,7 @@ async def armed() -> AsyncIterator[tuple[RosbridgeServer, Body, RosArms, Now]]:
 
 
 class TestArms:
-    async def test_degrees_by_limb_become_radians_by_joint_and_are_waited_for(self) -> None:
+    async def test_a_posture_in_degrees_is_sent_in_radians_and_awaited(self) -> None:
         async with armed() as (_, body, arms, _now):
             satisfied: Arms = arms
             posing = asyncio.create_task(
@@ -93,7 +93,7 @@ class TestArms:
             assert arms.reading().facts == {"hardware_error": False}
             assert arms.positions["neck"] == pytest.approx(math.radians(-20))
 
-    async def test_joints_that_are_late_or_silent_are_named(self) -> None:
+    async def test_late_or_silent_joints_are_named(self) -> None:
         async with armed() as (_, body, arms, now):
             for told, error in (
                 (False, "arm/shoulder says nothing"),
@@ -110,7 +110,7 @@ class TestArms:
                 with pytest.raises(DeviceError, match=error):
                     await soon(posing)
 
-    async def test_an_error_of_a_servo_ends_the_movement_and_the_next_is_not_begun(self) -> None:
+    async def test_a_servo_error_ends_the_movement_and_blocks_the_next(self) -> None:
         async with armed() as (server, body, arms, _):
             posing = asyncio.create_task(arms.pose({"arm": (10, 80)}, seconds=1))
             await until(lambda: body.goals)
@@ -137,7 +137,7 @@ class TestArms:
             body.step()
             await soon(asyncio.gather(head, second))
 
-    async def test_arms_that_hang_hold_again_for_the_next_posture(self) -> None:
+    async def test_limp_arms_get_torque_for_the_next_posture(self) -> None:
         async with armed() as (_, body, arms, _now):
             posing = asyncio.create_task(arms.pose({"head": (5,)}, seconds=1))
             await until(lambda: body.goals)
@@ -150,7 +150,7 @@ class TestArms:
             body.step()
             await soon(posing)
 
-    async def test_arms_that_are_told_to_hold_stay_where_they_are_on_their_way(self) -> None:
+    async def test_hold_stops_the_arms_in_mid_movement(self) -> None:
         async with armed() as (_, body, arms, _now):
             posing = asyncio.create_task(arms.pose({"arm": (90, 45), "head": (-20,)}, seconds=1))
             await until(lambda: body.goals)
@@ -164,7 +164,7 @@ class TestArms:
             body.step()
             assert body.positions == here and body.torque == []
 
-    async def test_in_ros_2_they_hold_by_a_trajectory_to_where_they_are(self) -> None:
+    async def test_hold_in_ros_2_sends_a_trajectory_to_the_current_angles(self) -> None:
         async with linked(ros=2) as (server, bridge, now):
             arms, body = RosArms(bridge, LIMBS, names={"head/neck nod": "neck"}), Body(server)
             await arms.start()
@@ -185,14 +185,14 @@ class TestArms:
             await arms.close()
 
     @pytest.mark.parametrize("angles", [{"tail": (1,)}, {"arm": (1,)}, {"head": (math.nan,)}])
-    async def test_what_the_body_has_not_is_refused(self, angles: Any) -> None:
+    async def test_unknown_limbs_and_angles_beyond_limits_are_refused(self, angles: Any) -> None:
         async with armed() as (_, _body, arms, _now):
             with pytest.raises(DeviceError, match="arms cannot take"):
                 await arms.pose(angles, seconds=1)
 
 
 class TestVoice:
-    async def test_a_sentence_is_over_when_it_was_said(self) -> None:
+    async def test_say_returns_when_the_robot_has_spoken(self) -> None:
         async with linked() as (server, bridge, _):
             voice, heard = RosVoice(bridge), list[Any]()
             satisfied: Voice = voice
@@ -241,7 +241,7 @@ class TestVoice:
             await soon(saying)
             assert voice.reading().state == OK
 
-    async def test_a_sound_is_over_when_it_was_played(self, tmp_path: Path) -> None:
+    async def test_play_returns_when_the_sound_has_played(self, tmp_path: Path) -> None:
         async with linked() as (server, bridge, _):
             voice, heard = RosVoice(bridge, play="/voice/play"), list[Any]()
             server.on_message("/voice/play", heard.append)
@@ -256,7 +256,7 @@ class TestVoice:
             with pytest.raises(DeviceError, match="plays no sounds"):
                 await RosVoice(bridge).play(sound)
 
-    async def test_hush_ends_what_is_being_said(self) -> None:
+    async def test_hush_ends_the_current_sentence(self) -> None:
         async with linked() as (server, bridge, _):
             voice, hushed = RosVoice(bridge), list[Any]()
             server.on_message("/voice/hush", hushed.append)

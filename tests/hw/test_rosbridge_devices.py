@@ -64,7 +64,7 @@ class TestBase:
             assert base.reading() == ("base", pytest.approx(0.3), OK, {}, None)
             await base.close()
 
-    async def test_a_command_is_repeated_until_it_is_too_old_and_then_is_zero(self) -> None:
+    async def test_a_command_repeats_until_it_expires_and_becomes_zero(self) -> None:
         async with linked() as (server, bridge, now):
             base, heard = RosBase(bridge, repeat=0.01), list[Any]()
             server.on_message("/cmd_vel", heard.append)
@@ -79,7 +79,7 @@ class TestBase:
             assert len(heard) == said
             await base.close()
 
-    async def test_a_stop_goes_ahead_of_all_that_waits_and_drives_are_never_sent_after_it(
+    async def test_a_stop_overtakes_queued_messages_and_drops_queued_drives(
         self,
     ) -> None:
         async with linked() as (server, bridge, _):
@@ -98,7 +98,7 @@ class TestBase:
             assert heard[0] == twist_message(Twist())
             await base.close()
 
-    async def test_a_frozen_robot_is_seen_by_age_and_a_stop_does_not_wait_for_it(self) -> None:
+    async def test_a_stop_does_not_wait_for_a_frozen_robot(self) -> None:
         async with linked() as (server, bridge, now):
             base = RosBase(bridge)
             await base.start()
@@ -115,7 +115,7 @@ class TestBase:
             assert bridge.connected
             await base.close()
 
-    async def test_without_a_link_driving_is_an_error_stopping_is_not_and_it_comes_back_still(
+    async def test_only_driving_is_an_error_without_a_link(
         self,
     ) -> None:
         async with linked() as (server, bridge, _):
@@ -136,7 +136,7 @@ class TestBase:
             assert set(driven(heard)) == {0.0}
             await base.close()
 
-    async def test_what_is_no_speed_is_not_driven(self) -> None:
+    async def test_an_invalid_speed_is_refused(self) -> None:
         async with linked() as (_, bridge, _now):
             base = RosBase(bridge)
             with pytest.raises(DeviceError, match="switched off"):
@@ -158,7 +158,7 @@ class TestBase:
             assert heard[-1]["header"]["stamp"] == {"sec": 0, "nanosec": 0}
             await base.close()
 
-    async def test_one_that_was_restarted_waits_for_new_data(self) -> None:
+    async def test_a_restarted_base_waits_for_new_data(self) -> None:
         async with linked() as (server, bridge, now):
             base = RosBase(bridge)
             await base.start()
@@ -202,7 +202,7 @@ class TestLaser:
 
 
 class TestStopButton:
-    async def test_it_is_pressed_when_it_says_so(self) -> None:
+    async def test_the_stop_button_reports_its_state(self) -> None:
         async with linked() as (server, bridge, now):
             button = RosStopButton(bridge)
             satisfied: StopButton = button
@@ -219,7 +219,7 @@ class TestStopButton:
             assert button.reading().age == pytest.approx(0.3)
             await button.close()
 
-    async def test_one_that_speaks_only_when_it_changes_is_as_old_as_the_link(self) -> None:
+    async def test_a_button_that_reports_only_changes_is_as_old_as_the_link(self) -> None:
         async with linked() as (server, bridge, now):
             button = RosStopButton(bridge, pressed=False, changes_only=True)
             await button.start()
@@ -234,7 +234,7 @@ class TestStopButton:
 
 
 class TestDiagnostics:
-    async def test_the_worst_that_is_said_of_a_device_counts_while_it_is_new(self) -> None:
+    async def test_the_worst_recent_diagnosis_of_a_device_counts(self) -> None:
         async with linked() as (server, bridge, now):
             told = RosDiagnostics(bridge, names={"kobuki": "base"})
             base = RosBase(bridge, diagnostics=told)

@@ -1,4 +1,4 @@
-"""What befalls a link by rosbridge: loss, frost, slow readers, and messages that are none."""
+"""A link by rosbridge under loss, freezes, slow readers, and invalid messages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.support.waiting import until
 
 
 class TestLink:
-    async def test_a_lost_link_comes_back_with_all_subscriptions(self) -> None:
+    async def test_a_restored_link_renews_all_subscriptions(self) -> None:
         said: list[str] = []
         async with linked(tell=said.append) as (server, bridge, _):
             heard: list[Any] = []
@@ -60,7 +60,7 @@ class TestLink:
             server.publish("/odom", "", {})
             await until(lambda: bridge.reading().age == 0)
 
-    async def test_a_pause_can_leave_out_the_clock_of_a_bench(self) -> None:
+    async def test_a_pause_can_spare_the_clock_of_a_bench(self) -> None:
         async with linked() as (server, bridge, _):
             ticks: list[Any] = []
             server.provide("/bench/advance", done)
@@ -78,7 +78,7 @@ class TestLink:
             server.resume()
             assert await soon(other) == {"done": True}
 
-    async def test_what_was_said_in_a_pause_is_heard_after_it_and_the_newest_last(self) -> None:
+    async def test_messages_sent_during_a_pause_arrive_after_it_in_order(self) -> None:
         async with linked() as (server, bridge, _):
             heard: list[Any] = []
             server.on_message("/cmd_vel", lambda message: heard.append(message["n"]))
@@ -96,7 +96,7 @@ class TestLink:
             assert heard[-1] == 1_499
             assert server.is_subscribed("/odom")
 
-    async def test_a_client_that_does_not_read_delays_nobody(self) -> None:
+    async def test_a_client_that_does_not_read_delays_no_other(self) -> None:
         async with (
             linked() as (server, bridge, _),
             connect(server.url, compression=None, max_queue=1, close_timeout=0) as slow,
@@ -114,13 +114,13 @@ class TestLink:
     @pytest.mark.parametrize(
         "url", ["", "robot", "http://robot:9090", "ws://", "ws://a:b", "ws://[x"]
     )
-    def test_an_address_that_is_none_is_one_sentence(self, url: str) -> None:
+    def test_an_invalid_address_is_refused_in_one_sentence(self, url: str) -> None:
         with pytest.raises(DeviceError, match="give ws://HOST:PORT"):
             Rosbridge(url)
 
 
 class TestOddMessages:
-    async def test_what_is_no_message_is_told_once_and_does_not_end_the_link(self) -> None:
+    async def test_an_invalid_message_is_reported_once_and_keeps_the_link(self) -> None:
         raw, said, heard = Raw(), list[str](), list[Any]()
         async with raw.serving(tell=said.append) as bridge:
             bridge.subscribe("/odom", "", lambda message: heard.append(message["n"]))
@@ -139,7 +139,7 @@ class TestOddMessages:
         assert len(said) == len(set(said))
         assert not any("\x1b" in line for line in said)
 
-    async def test_a_large_message_comes_in_fragments_where_that_is_wished(self) -> None:
+    async def test_a_large_message_is_fragmented_on_request(self) -> None:
         message = {"data": list(range(500))}
         raw, heard = Raw(), list[Any]()
         async with linked() as (server, _, _), connect(server.url) as client:
@@ -167,7 +167,7 @@ class TestOddMessages:
         whole = Fragments()
         assert [whole.take(part) for part in numbered] == [None] * (len(parts) - 1) + [text]
 
-    def test_fragments_that_never_become_whole_are_given_up(self) -> None:
+    def test_incomplete_fragments_are_dropped(self) -> None:
         whole = Fragments()
         for number in range(1_000):
             whole.take({"id": number, "num": 0, "total": 2, "data": "x"})

@@ -1,4 +1,4 @@
-"""ROS messages as bridges of both kinds send them, and what is read in them."""
+"""Reading and writing the ROS messages of bridges for ROS 1 and ROS 2."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ POSES = st.builds(Pose, METRES, METRES, HEADINGS)
 
 
 @given(st.floats(0, 1e9), st.sampled_from([1, 2]))
-def test_times_are_read_as_they_were_written(seconds: float, ros: int) -> None:
+def test_times_are_read_back_unchanged(seconds: float, ros: int) -> None:
     message = time_message(seconds, ros)
     assert set(message) == ({"secs", "nsecs"} if ros == 1 else {"sec", "nanosec"})
     assert 0 <= list(message.values())[1] < 1_000_000_000
@@ -47,12 +47,12 @@ def test_times_are_read_as_they_were_written(seconds: float, ros: int) -> None:
 
 
 @given(POSES)
-def test_poses_are_read_as_they_were_written(pose: Pose) -> None:
+def test_poses_are_read_back_unchanged(pose: Pose) -> None:
     assert pose_of(json.loads(json.dumps(pose_message(pose)))) == pytest.approx(pose)
 
 
 @given(POSES, POSES)
-def test_what_a_map_calls_a_place_the_room_calls_as_before(pose: Pose, origin: Pose) -> None:
+def test_a_pose_survives_the_trip_to_the_map_frame_and_back(pose: Pose, origin: Pose) -> None:
     there = within(pose, origin)
     back = seen_from(there, origin)
     assert back[:2] == pytest.approx(pose[:2], abs=1e-6)
@@ -65,9 +65,7 @@ def test_a_room_turned_by_a_quarter_in_the_map() -> None:
 
 
 @given(HEADINGS, st.floats(-0.3, 0.3), st.floats(0.5, 2))
-def test_a_heading_is_that_of_a_robot_that_leans_or_rounds(
-    heading: float, lean: float, length: float
-) -> None:
+def test_a_heading_ignores_tilt_and_rounding(heading: float, lean: float, length: float) -> None:
     """A quaternion turned about the robot's own side, and not of length one."""
     turn = quaternion_message(heading)
     z, w, s, c = turn["z"], turn["w"], math.sin(lean / 2), math.cos(lean / 2)
@@ -95,7 +93,7 @@ SCAN: dict[str, Any] = {
 
 
 class TestScans:
-    def test_what_met_nothing_or_is_unknown_is_infinite(self) -> None:
+    def test_beams_without_a_valid_echo_are_infinite(self) -> None:
         ranges = [1.0, None, math.nan, math.inf, 0.05, 0.0, 5.0, 5.01, -1.0]
         scan, raw = scan_of({**SCAN, "ranges": ranges}, 0.25)
         assert scan.ranges.tolist() == [1.0] + [math.inf] * 5 + [5.0] + [math.inf] * 2
@@ -112,11 +110,11 @@ class TestScans:
             {"range_max": None},
         ],
     )
-    def test_what_is_no_scan_is_none(self, wrong: dict[str, Any]) -> None:
+    def test_an_invalid_scan_is_refused(self, wrong: dict[str, Any]) -> None:
         with pytest.raises((ValueError, TypeError)):
             scan_of({**SCAN, "ranges": [1.0], **wrong})
 
-    def test_beams_that_stay_as_they_are_have_not_changed(self) -> None:
+    def test_identical_beams_count_as_unchanged(self) -> None:
         first = np.array([1.0, 2.0, math.nan, math.inf])
         assert changed_share([first, first.copy()]) == 0
         assert changed_share([first, np.array([1.0, 2.1, 3.0, math.inf]), first]) == 0.5
@@ -141,7 +139,7 @@ class TestJoints:
         with pytest.raises(ValueError):
             joints_of({"name": ["a"], "position": [None]})
 
-    def test_names_that_differ_are_read_from_a_profile(self) -> None:
+    def test_a_profile_maps_other_joint_names(self) -> None:
         text = "head/neck nod = head_tilt, head/neck shake=head_pan,"
         assert joined_names(text) == {"head/neck nod": "head_tilt", "head/neck shake": "head_pan"}
         for wrong in ("head", "=x", "a=", "a=b, a=c"):
@@ -172,6 +170,6 @@ class TestDiagnoses:
         assert found[0][2:] == ("m", {"a": "1"})
 
     @pytest.mark.parametrize("level", [4, -1, True, None, "x", "12", 1.5])
-    def test_what_is_no_level_is_none(self, level: Any) -> None:
+    def test_an_unknown_level_is_refused(self, level: Any) -> None:
         with pytest.raises(ValueError):
             statuses_of({"status": [{"level": level, "name": "a"}]})

@@ -1,4 +1,4 @@
-"""Robots that find their way themselves: goals of ROS 1 and ROS 2, and what becomes of them."""
+"""Robots with a navigation of their own: goals of ROS 1 and ROS 2, and their results."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ async def navigating(ros: int) -> AsyncIterator[tuple[RosbridgeServer, RosNaviga
 
 
 class TestMoveBase:
-    async def test_a_goal_is_of_the_robot_s_map_and_where_it_is_of_the_room(self) -> None:
+    async def test_goals_are_sent_in_the_map_frame_and_poses_read_in_the_room_frame(self) -> None:
         async with navigating(1) as (server, navigator, _):
             base = MoveBase(server)
             going = asyncio.create_task(navigator.go(GOAL, 30))
@@ -73,7 +73,7 @@ class TestMoveBase:
         ("code", "path", "error"),
         [(4, "none", "found no way: blocked"), (5, "clear", "refused: blocked")],
     )
-    async def test_a_goal_that_cannot_be_reached_says_why(
+    async def test_an_unreachable_goal_fails_with_a_reason(
         self, code: int, path: str, error: str
     ) -> None:
         async with navigating(1) as (server, navigator, _):
@@ -88,7 +88,7 @@ class TestMoveBase:
             assert navigator.reading().facts == {"path": path}
             assert not base.cancelled
 
-    async def test_a_goal_that_is_given_up_or_forgotten_is_cancelled_at_the_robot(self) -> None:
+    async def test_a_cancelled_goal_or_task_is_cancelled_at_the_robot(self) -> None:
         async with navigating(1) as (server, navigator, _):
             base = MoveBase(server)
             going = asyncio.create_task(navigator.go(GOAL, 30))
@@ -104,7 +104,7 @@ class TestMoveBase:
             forgotten.cancel()
             await until(lambda: base.cancelled == list(base.goals))
 
-    async def test_a_newer_goal_ends_the_one_before(self) -> None:
+    async def test_a_new_goal_replaces_the_running_one(self) -> None:
         async with navigating(1) as (server, navigator, _):
             base = MoveBase(server)
             first = asyncio.create_task(navigator.go(GOAL, 30))
@@ -118,7 +118,7 @@ class TestMoveBase:
             await soon(second)
             assert str(navigator.state) == "arrived"
 
-    async def test_a_goal_is_sent_again_until_it_is_taken_as_topics_begin_late(self) -> None:
+    async def test_a_goal_is_repeated_until_the_robot_accepts_it(self) -> None:
         async with navigating(1) as (server, navigator, _):
             deaf = list[Any]()
             server.on_message("/move_base/goal", deaf.append)
@@ -130,7 +130,7 @@ class TestMoveBase:
             base.end(3)
             await soon(going)
 
-    async def test_a_goal_that_was_under_way_when_the_link_was_lost_is_cancelled_after(
+    async def test_a_goal_running_at_a_link_loss_is_cancelled_afterwards(
         self,
     ) -> None:
         async with navigating(1) as (server, navigator, bridge):
@@ -143,7 +143,7 @@ class TestMoveBase:
             await until(lambda: base.cancelled == list(base.goals))
             assert bridge.connected
 
-    async def test_a_goal_that_was_given_up_before_it_was_taken_is_not_sent_again(self) -> None:
+    async def test_a_goal_cancelled_before_acceptance_is_not_repeated(self) -> None:
         async with navigating(1) as (server, navigator, _):
             base = MoveBase(server)
             base.takes = False
@@ -164,7 +164,7 @@ class TestMoveBase:
             await until(lambda: len(base.cancelled) == 3)
             assert len(set(base.cancelled)) == 1
 
-    async def test_a_goal_of_a_process_of_ours_that_was_killed_is_given_up(self) -> None:
+    async def test_a_goal_left_by_a_killed_process_is_cancelled(self) -> None:
         async with navigating(1) as (server, _, _bridge):
             base = MoveBase(server)
             await soon(server.subscribed("/move_base/status"))
@@ -174,7 +174,7 @@ class TestMoveBase:
             await until(lambda: base.cancelled)
             assert base.cancelled == ["tangy-1234-2"]
 
-    async def test_it_tells_where_it_is_how_sure_that_is_and_how_old(self) -> None:
+    async def test_localisation_reports_pose_certainty_and_age(self) -> None:
         async with navigating(1) as (server, navigator, _):
             base = MoveBase(server)
             assert navigator.localisation().state == STALE
@@ -185,7 +185,7 @@ class TestMoveBase:
             base.place(IN_MAP, 0.8)
             await until(lambda: navigator.localisation().facts["fit"] == 0.0)
 
-    async def test_the_place_of_a_robot_that_stands_is_as_old_as_its_link(self) -> None:
+    async def test_the_pose_of_a_standing_robot_is_as_old_as_the_link(self) -> None:
         async with linked() as (server, bridge, now):
             navigator = RosNavigator(bridge)
             await navigator.start()
@@ -210,7 +210,7 @@ class TestMoveBase:
             await soon(going)
             await navigator.close()
 
-    async def test_it_is_told_where_it_is(self) -> None:
+    async def test_place_sends_the_initial_pose(self) -> None:
         async with navigating(1) as (server, navigator, _):
             told = list[Any]()
             server.on_message("/initialpose", told.append)
@@ -222,7 +222,7 @@ class TestMoveBase:
 
 
 class TestNavigateToPose:
-    async def test_it_drives_tells_of_detours_and_arrives(self) -> None:
+    async def test_a_drive_reports_detours_and_arrives(self) -> None:
         goals, go_on = list[Any](), asyncio.Event()
 
         async def drives(goal: Any, feedback: Callable[[Any], None]) -> dict[str, Any]:
@@ -243,7 +243,7 @@ class TestNavigateToPose:
             await soon(going)
             assert navigator.state == "arrived"
 
-    async def test_it_fails_and_is_cancelled_at_the_robot(self) -> None:
+    async def test_a_drive_without_a_path_fails_and_a_cancelled_one_ends_at_the_robot(self) -> None:
         began, ended = asyncio.Event(), asyncio.Event()
 
         async def drives(goal: Any, _: Any) -> dict[str, Any]:
@@ -269,7 +269,7 @@ class TestNavigateToPose:
             assert ended.is_set()
             assert navigator.state == "idle"
 
-    async def test_a_bridge_that_hears_nothing_while_a_goal_is_under_way_still_hears_a_stop(
+    async def test_a_bridge_that_blocks_during_a_goal_still_gets_a_stop(
         self,
     ) -> None:
         """Some of ROS 2 read no more of a connection until the goal that it sent is over."""
@@ -305,7 +305,7 @@ class TestNavigateToPose:
             await navigator.close()
             await bridge.close()
 
-    async def test_a_goal_that_goes_on_after_it_was_given_up_is_given_up_again(self) -> None:
+    async def test_a_goal_that_ignores_its_cancellation_is_cancelled_again(self) -> None:
         cancelled = list[str]()
 
         async def attend(link: ServerConnection) -> None:
@@ -340,7 +340,7 @@ class TestNavigateToPose:
             await navigator.close()
             await bridge.close()
 
-    async def test_a_goal_whose_link_was_lost_is_cancelled_when_it_is_back(self) -> None:
+    async def test_a_goal_is_cancelled_when_its_lost_link_returns(self) -> None:
         began, ended = asyncio.Event(), asyncio.Event()
 
         async def drives(_goal: Any, _feedback: Any) -> dict[str, Any]:

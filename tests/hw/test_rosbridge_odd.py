@@ -1,4 +1,4 @@
-"""Whatever a bridge sends, the link and the devices behind it go on."""
+"""No message from a bridge breaks the link or the devices behind it."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def spoilt(draw: st.DrawFn) -> tuple[str, Any]:
 
 @pytest.mark.slow
 @given(st.lists(spoilt(), min_size=5, max_size=20))
-def test_messages_that_are_spoilt_anywhere_are_passed_over(messages: list[tuple[str, Any]]) -> None:
+def test_messages_with_a_corrupt_field_are_ignored(messages: list[tuple[str, Any]]) -> None:
     async def run() -> None:
         told: list[str] = []
         bridge = Rosbridge("ws://127.0.0.1:9", tell=told.append)
@@ -103,7 +103,7 @@ def test_messages_that_are_spoilt_anywhere_are_passed_over(messages: list[tuple[
 
 
 @given(st.one_of(JSON, st.dictionaries(st.sampled_from(("op", "id", "values", "data")), JSON)))
-def test_what_is_no_message_at_all_is_passed_over(message: Any) -> None:
+def test_invalid_messages_are_ignored(message: Any) -> None:
     bridge = Rosbridge("ws://127.0.0.1:9")
     bridge.hear(json.dumps(message))
     for op in ("fragment", "service_response", "action_result", "publish", "status"):

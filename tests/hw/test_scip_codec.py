@@ -1,4 +1,4 @@
-"""SCIP 2.0 as bytes: numbers go there and back, damage is noticed, replies are told apart."""
+"""SCIP 2.0 as bytes: numbers, checksums, and the separation of replies."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class TestNumbers:
     @pytest.mark.parametrize(
         ("value", "written"), [(1234, b"CB"), (5432, b"1Dh"), (16000000, b"m2@0")]
     )
-    def test_the_examples_of_the_specification(self, value: int, written: bytes) -> None:
+    def test_the_examples_of_the_specification_decode(self, value: int, written: bytes) -> None:
         assert encode(value, len(written)) == written
         assert decode(written) == value
 
     @given(st.integers(1, 5).flatmap(lambda n: st.tuples(st.just(n), st.integers(0, 64**n - 1))))
-    def test_what_is_written_is_read(self, case: tuple[int, int]) -> None:
+    def test_encoding_and_decoding_a_number_gives_it_back(self, case: tuple[int, int]) -> None:
         length, value = case
         assert decode(encode(value, length)) == value
         assert encode(value, length) == number(value, length)
@@ -51,24 +51,24 @@ class TestNumbers:
         assert decode_all(joined(lines), 3).tolist() == values
 
     @pytest.mark.parametrize("value", [-1, 64**2])
-    def test_what_does_not_fit_is_refused(self, value: int) -> None:
+    def test_a_number_too_large_for_its_field_is_refused(self, value: int) -> None:
         with pytest.raises(ValueError, match="does not fit"):
             encode(value, 2)
 
     @pytest.mark.parametrize("written", [b"0 0", b"0p0", b"00\x80"])
-    def test_no_other_character_is_a_number(self, written: bytes) -> None:
+    def test_characters_outside_the_code_are_refused(self, written: bytes) -> None:
         for read in (lambda: decode(written), lambda: decode_all(written, 3)):
             with pytest.raises(ScipError):
                 read()
 
-    def test_a_distance_that_is_cut_off_is_noticed(self) -> None:
+    def test_a_truncated_distance_is_refused(self) -> None:
         with pytest.raises(ScipError, match="cut off"):
             decode_all(b"0000", 3)
 
 
 class TestReplies:
     @given(st.binary(min_size=1, max_size=64), st.data())
-    def test_a_bit_that_falls_over_is_noticed(self, line: bytes, data: st.DataObject) -> None:
+    def test_the_checksum_detects_a_flipped_bit(self, line: bytes, data: st.DataObject) -> None:
         whole = line + bytes([checksum(line)])
         assert checked(whole) == line
         place = data.draw(st.integers(0, len(whole) - 1))
@@ -79,7 +79,7 @@ class TestReplies:
             checked(bytes(damaged))
 
     @given(st.lists(BODIES, max_size=5), st.lists(st.integers(0, 400), max_size=8))
-    def test_replies_are_the_same_however_they_come_in_pieces(
+    def test_replies_are_reassembled_from_pieces_of_any_size(
         self, bodies: list[list[bytes]], cuts: list[int]
     ) -> None:
         sent = [b"\n".join(lines) for lines in bodies]
@@ -93,7 +93,7 @@ class TestReplies:
         assert got == sent
         assert rest == b""
 
-    def test_what_never_ends_is_given_up(self) -> None:
+    def test_a_reply_without_an_end_is_refused(self) -> None:
         with pytest.raises(ScipError, match="without an end"):
             split(b"0" * (LONGEST + 1))
 
@@ -103,12 +103,12 @@ class TestReplies:
         assert parse(b"SCIP2.0\n0").status == "0"
 
     @pytest.mark.parametrize("came", [b"", b"QT", b"QT\n00Q", b"QT\n", b"QT\n\xff\xfe" + b"M"])
-    def test_a_reply_without_a_sound_status_is_none(self, came: bytes) -> None:
+    def test_a_reply_without_a_valid_status_is_refused(self, came: bytes) -> None:
         with pytest.raises(ScipError):
             parse(came)
 
     @pytest.mark.parametrize("status", ["0L", "0M", "0E", "10", "21", "57", "97", "04"])
-    def test_every_trouble_has_words_and_success_has_none(self, status: str) -> None:
+    def test_every_error_status_has_a_description(self, status: str) -> None:
         assert trouble(status)
         assert not trouble("00") and not trouble("99")
 
@@ -123,7 +123,7 @@ class TestProperties:
              "AMAX:725", "AFRT:384", "SCAN:600")  # fmt: skip
 
     @pytest.mark.parametrize("with_semicolon", [False, True])
-    def test_they_are_read_from_both_ways_of_checksums(self, with_semicolon: bool) -> None:
+    def test_properties_are_read_with_either_kind_of_checksum(self, with_semicolon: bool) -> None:
         said = [line(one, with_semicolon=with_semicolon) for one in self.RIGHT]
         read = optics(named([*said, b""]))
         assert (read.model, read.nearest, read.farthest) == ("URG-04LX", 0.02, 5.6)
@@ -131,11 +131,11 @@ class TestProperties:
         assert read.step == pytest.approx(0.0061359, rel=1e-4)
 
     @pytest.mark.parametrize("wrong", ["DMAX:10", "ARES:0", "AMAX:44", "SCAN:0", "AMIN:x"])
-    def test_those_that_cannot_be_are_refused(self, wrong: str) -> None:
+    def test_impossible_properties_are_refused(self, wrong: str) -> None:
         facts = dict(named(line(one) for one in (*self.RIGHT, wrong)))
         with pytest.raises(ScipError):
             optics(facts)
 
-    def test_a_damaged_one_is_refused(self) -> None:
+    def test_a_damaged_property_is_refused(self) -> None:
         with pytest.raises(ScipError, match="checksum"):
             named([line("DMIN:20").replace(b"2", b"3")])

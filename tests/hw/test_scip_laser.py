@@ -1,4 +1,4 @@
-"""A laser scanner is read over its own wire, and says of itself what the diagnosis must know."""
+"""A laser scanner behind SCIP: its scans, and the facts that the diagnosis needs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROOM = np.linspace(0.3, 4.0, URG.beams)
 
 
 class Bench:
-    """A scanner and what reads it, on a clock that stands still unless it is told."""
+    """A scanner and its driver, on a clock that the test advances."""
 
     def __init__(self) -> None:
         self.server = ScipServer(URG)
@@ -61,7 +61,7 @@ async def bench() -> AsyncIterator[Bench]:
 
 
 class TestScans:
-    async def test_distances_come_as_they_were_measured(self, bench: Bench) -> None:
+    async def test_distances_arrive_as_measured(self, bench: Bench) -> None:
         await bench.attach()
         assert bench.laser.scan is None and bench.laser.reading().state == "STALE"
         read = await bench.turn(ROOM)
@@ -75,34 +75,34 @@ class TestScans:
         assert bench.laser.reading().state == "OK"
         assert bench.laser.about["PROT"] == "SCIP 2.0"
 
-    async def test_what_is_not_known_is_endless(self, bench: Bench) -> None:
+    async def test_beams_without_a_valid_distance_are_infinite(self, bench: Bench) -> None:
         await bench.attach()
         ranges = ROOM.copy()
         ranges[:4] = [math.inf, 5.7, 0.019, math.nan]
         read = await bench.turn(ranges)
         assert np.isinf(read[:4]).all() and np.isfinite(read[4:]).all()
 
-    async def test_they_cannot_be_written_to(self, bench: Bench) -> None:
+    async def test_scans_are_read_only(self, bench: Bench) -> None:
         await bench.attach()
         read = await bench.turn(ROOM)
         with pytest.raises(ValueError, match="read-only"):
             read[0] = 1.0
 
-    async def test_scans_that_never_came_are_counted(self, bench: Bench) -> None:
+    async def test_lost_scans_are_counted(self, bench: Bench) -> None:
         await bench.attach()
         for lost in (0, 0, 3, 0, 1):
             await bench.turn(ROOM, lost=lost)
         assert bench.laser.missed == 4
         assert bench.laser.scan is not None and bench.laser.scan.seq == 5
 
-    async def test_the_scanners_clock_may_begin_again(self, bench: Bench) -> None:
+    async def test_a_wrapped_scanner_clock_loses_no_scan(self, bench: Bench) -> None:
         await bench.attach()
         bench.turns = (1 << 24) // 100 - 2
         for _ in range(5):
             await bench.turn(ROOM)
         assert bench.laser.missed == 0
 
-    async def test_one_that_hangs_upside_down_sees_the_other_way_round(self, bench: Bench) -> None:
+    async def test_a_scanner_mounted_upside_down_is_mirrored(self, bench: Bench) -> None:
         await bench.attach(flipped=True, turned=math.pi)
         read = await bench.turn(ROOM)
         scan = bench.laser.scan
@@ -137,7 +137,7 @@ class TestFacts:
         await bench.turn(ranges)
         assert bench.laser.reading().facts["near_share"] == pytest.approx(0.25)
 
-    async def test_variety_is_told_when_a_second_was_seen(self, bench: Bench) -> None:
+    async def test_variety_is_reported_after_the_first_second(self, bench: Bench) -> None:
         await bench.attach()
         rng = np.random.default_rng(1)
         for turn in range(12):
@@ -148,7 +148,7 @@ class TestFacts:
                 assert ("variety" in bench.laser.reading().facts) == (turn == 9)
         assert bench.laser.reading().facts["variety"] == pytest.approx(0.5, abs=0.02)
 
-    async def test_a_covered_scanner_has_no_variety_whatever_its_reasons(
+    async def test_a_covered_scanner_with_flickering_error_codes_has_no_variety(
         self, bench: Bench
     ) -> None:
         await bench.attach()
@@ -158,7 +158,7 @@ class TestFacts:
             await bench.turn(rng.uniform(0, 0.019, URG.beams))
         assert bench.laser.reading().facts["variety"] == 0
 
-    async def test_what_changed_is_forgotten_after_a_second(self, bench: Bench) -> None:
+    async def test_variety_counts_only_changes_of_the_last_second(self, bench: Bench) -> None:
         await bench.attach()
         await bench.turn(ROOM + 0.1)
         for _ in range(11):
@@ -167,7 +167,7 @@ class TestFacts:
 
 
 class TestRate:
-    async def test_scans_are_counted(self, bench: Bench) -> None:
+    async def test_the_rate_of_scans_is_measured(self, bench: Bench) -> None:
         await bench.attach()
         for turn in range(25):
             await bench.turn(ROOM)
@@ -179,7 +179,7 @@ class TestRate:
 
 
 class TestFaults:
-    async def test_a_scan_grows_old(self, bench: Bench) -> None:
+    async def test_the_age_of_a_scan_grows(self, bench: Bench) -> None:
         await bench.attach()
         await bench.turn(ROOM)
         bench.now += 0.3
@@ -187,7 +187,7 @@ class TestFaults:
         assert reading.state == "STALE" and reading.age == pytest.approx(0.3)
         assert not reading.facts
 
-    async def test_one_whose_cable_is_pulled_out_is_found_again(self, bench: Bench) -> None:
+    async def test_a_scanner_reconnects_after_its_cable_was_pulled(self, bench: Bench) -> None:
         await bench.attach()
         await bench.turn(ROOM)
         bench.server.closed = True
@@ -200,7 +200,7 @@ class TestFaults:
         assert bench.laser.scan is not None and bench.laser.scan.seq == 2
 
     @pytest.mark.parametrize("noise", [b"\xff\x00?\n", b"noise", b"99b\n0000\n", b"MD"])
-    async def test_noise_before_each_reply_loses_no_scan(self, bench: Bench, noise: bytes) -> None:
+    async def test_noise_before_a_reply_loses_no_scan(self, bench: Bench, noise: bytes) -> None:
         bench.server.cable = lambda sent: noise + sent
         await bench.attach()
         for _ in range(5):
@@ -208,7 +208,7 @@ class TestFaults:
         assert bench.laser.missed == 0 and bench.laser.spoilt >= 5
         assert bench.laser.reading().state == "WARN"  # somebody should see to the cable
 
-    async def test_replies_that_lose_their_end_take_no_other_with_them(self, bench: Bench) -> None:
+    async def test_a_truncated_reply_spoils_no_other_reply(self, bench: Bench) -> None:
         await bench.attach()
         sent = 0
 
@@ -223,7 +223,7 @@ class TestFaults:
             bench.turns = turn
             assert np.abs(await bench.turn(ROOM) - ROOM).max() <= 0.0005
 
-    async def test_one_that_says_nothing_any_more_is_asked_again(
+    async def test_a_silent_scanner_is_asked_again(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(scip, "ANSWER_SECONDS", 0.05)
@@ -241,7 +241,7 @@ class TestFaults:
         assert (bench.laser.reading().state, bench.laser.why) == ("OK", "")
 
     @pytest.mark.parametrize("status", ["0L", "70"])
-    async def test_one_whose_motor_stalls_says_so_and_comes_back(
+    async def test_a_stalled_motor_is_reported_until_it_recovers(
         self, bench: Bench, status: str
     ) -> None:
         await bench.attach()
@@ -255,7 +255,7 @@ class TestFaults:
         await bench.turn(ROOM)
         assert (bench.laser.reading().state, bench.laser.why) == ("OK", "")
 
-    async def test_one_that_is_not_there_is_waited_for(self) -> None:
+    async def test_a_missing_scanner_is_awaited(self) -> None:
         server = ScipServer()
         await server.start()
         port = server.port
@@ -275,7 +275,7 @@ class TestFaults:
         "address",
         ["tcp://", "udp://a:1", "tcp://x:y", "tcp://a..b:1", "", "/dev/null", "/dev/no-such-port"],
     )
-    async def test_an_address_that_is_none_is_told(self, address: str) -> None:
+    async def test_an_invalid_address_is_reported(self, address: str) -> None:
         laser = ScipLaser(address)
         await laser.start()
         await until(lambda: "not answered yet" not in laser.why)
@@ -283,7 +283,7 @@ class TestFaults:
         assert address in laser.why and laser.why.endswith(".")
         await laser.close()
 
-    async def test_damaged_scans_are_left_out_and_told(self) -> None:
+    async def test_damaged_scans_are_dropped_and_reported(self) -> None:
         """A cable that spoils every third reply, and cuts and glues the others as it likes."""
         server = ScipServer()
         await server.start()

@@ -17,7 +17,7 @@ VIEW = TableView(CORNERS, load_room(), len(SEATS))
 
 class TestTriangles:
     @pytest.mark.parametrize("size", [14, 20, 35, 50])
-    def test_a_triangle_is_found_where_it_is(self, size: int) -> None:
+    def test_a_triangle_is_found_at_its_place(self, size: int) -> None:
         rng = np.random.default_rng(size)
         image = np.full((240, 320), 20, np.uint8)
         corners = Things(rng).sign((150.0, 110.0), size)
@@ -29,7 +29,7 @@ class TestTriangles:
         assert found.sure > 0.5
 
     @pytest.mark.parametrize("kind", OTHERS)
-    def test_nothing_else_is_a_triangle(self, kind: str) -> None:
+    def test_other_shapes_are_not_taken_for_triangles(self, kind: str) -> None:
         rng = np.random.default_rng(5)
         for size in (12, 18, 30, 60):
             image = np.full((240, 320), 20, np.uint8)
@@ -38,27 +38,27 @@ class TestTriangles:
             assert find_triangles(np.asarray(blurred, np.uint8)) == []
 
     @pytest.mark.parametrize("value", [0, 128, 255])
-    def test_an_even_picture_holds_none(self, value: int) -> None:
+    def test_an_even_picture_has_no_triangle(self, value: int) -> None:
         for shape in ((1, 1), (480, 640), (480, 640, 3)):
             assert find_triangles(np.full(shape, value, np.uint8)) == []
 
-    def test_noise_holds_none(self) -> None:
+    def test_noise_has_no_triangle(self) -> None:
         noise = np.random.default_rng(1).integers(0, 256, (240, 320), np.uint8)
         assert find_triangles(noise) == []
 
 
 class TestTable:
     @pytest.mark.parametrize("seat", range(len(SEATS)))
-    def test_a_sign_belongs_to_the_seat_before_which_it_stands(self, seat: int) -> None:
+    def test_a_sign_belongs_to_the_nearest_seat(self, seat: int) -> None:
         for aside, across in ((0.0, 5.7), (0.5, 5.5), (-0.5, 5.6)):
             x, y = in_picture((SEATS[seat] + aside, across))
             assert VIEW.seat(x, y) == seat + 1
 
-    def test_what_is_not_on_the_table_belongs_to_nobody(self) -> None:
+    def test_a_sign_off_the_table_belongs_to_no_seat(self) -> None:
         for x, y in ((320.0, 100.0), (20.0, 240.0), (320.0, -4000.0), (630.0, 300.0)):
             assert VIEW.seat(x, y) == 0
 
-    def test_a_place_is_in_metres(self) -> None:
+    def test_positions_on_the_table_are_in_metres(self) -> None:
         place = VIEW.place(*in_picture((3.0, 5.4)))
         assert place is not None
         assert (place.x, place.y) == pytest.approx((3.0, 5.4))
@@ -71,7 +71,7 @@ class TestTable:
             ((0, 0), (10, 10), (10, 0), (0, 10)),
         ],
     )
-    def test_corners_that_make_no_table_are_refused(self, corners: tuple[object, ...]) -> None:
+    def test_impossible_table_corners_are_refused(self, corners: tuple[object, ...]) -> None:
         with pytest.raises(RequestError, match="go round"):
             TableView(corners, load_room(), 4)  # type: ignore[arg-type]
 
@@ -94,17 +94,17 @@ class TestPersistence:
             ("xxxxxx.xx.xx", "..xxxxxxxxxx"),
         ],
     )
-    def test_three_of_five(self, shown: str, believed: str) -> None:
+    def test_a_sign_needs_three_of_five_pictures(self, shown: str, believed: str) -> None:
         assert self.believed(shown)[: len(shown)] == believed
 
-    def test_how_sure_it_is_grows_with_what_was_seen(self) -> None:
+    def test_confidence_grows_with_each_sighting(self) -> None:
         persistence = Hysteresis()
         grown = [persistence.take({2: 1.0}).get(2, 0.0) for _ in range(6)]
         assert grown == sorted(grown) and grown[-1] == 1.0
 
 
 @pytest.mark.slow
-def test_who_asks_is_seen_and_nobody_else() -> None:
+def test_requests_are_detected_with_few_false_alarms() -> None:
     """A small piece of `tests/bench/requests.py`, of other seeds than it."""
     asked = seen = false = pictures = 0
     for seed in range(700_000, 700_016):

@@ -46,7 +46,7 @@ def ask(world: DeclaredLiveWorld | DeclaredWorld) -> Outcome:
     return world.execute(world.activity.action(question, "user1", None))
 
 
-def test_a_robot_asks_again_in_the_words_of_the_file_and_then_goes_on(
+def test_a_robot_asks_a_silent_person_again_in_the_words_of_the_file(
     activity: DeclaredActivity,
 ) -> None:
     link = FakeLink(PEOPLE)
@@ -62,7 +62,7 @@ def test_a_robot_asks_again_in_the_words_of_the_file_and_then_goes_on(
     assert asked == [True] * activity.asking.visit + [False, False]
 
 
-def test_a_robot_does_not_ask_again_who_answers(activity: DeclaredActivity) -> None:
+def test_a_robot_does_not_ask_a_person_again_after_an_answer(activity: DeclaredActivity) -> None:
     link = FakeLink(PEOPLE)
     world = live(activity, link)
 
@@ -85,7 +85,7 @@ def test_simulated_people_who_say_nothing_are_asked_again(
     assert ask(talks).unclear == () and talks.game.value("answer", "user1") != "none"
 
 
-def test_people_on_the_bench_understand_that_they_are_asked_again(
+def test_people_on_the_bench_understand_a_repeated_question(
     activity: DeclaredActivity,
 ) -> None:
     hint = activity.declaration.items.value(0, "hint")
@@ -102,12 +102,14 @@ def test_people_on_the_bench_understand_that_they_are_asked_again(
         ('again = ["The next one is for {name}. {ask} {a}, {b} or {c}?"]', "other words"),
     ],
 )
-def test_what_cannot_be_said_again_is_a_mistake(tmp_path: Path, again: str, problem: str) -> None:
+def test_an_invalid_wording_for_asking_again_is_refused(
+    tmp_path: Path, again: str, problem: str
+) -> None:
     with pytest.raises(ProfileError, match=problem):
         changed_trivia(tmp_path, (AGAIN, f"{again}\n"))
 
 
-def test_a_group_cannot_be_asked_again(tmp_path: Path) -> None:
+def test_a_question_to_the_group_cannot_be_repeated(tmp_path: Path) -> None:
     says = '[behaviours."allow time"]\n'
     with pytest.raises(ProfileError, match="needs a person"):
         changed_trivia(tmp_path, (says, f'{says}again = ["Still there?"]\n'))

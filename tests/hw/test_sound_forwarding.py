@@ -1,4 +1,4 @@
-"""Handing sound on: exactly when nobody is late, never old, and to whoever listens next."""
+"""Forwarding sound: unchanged, never old, and to the next listener after a restart."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SOUND = np.random.default_rng(2).integers(-9_000, 9_000, RATE, np.int16).astype(
 
 
 class Spoken(Source):
-    """A live source that says what it is given; nothing is its end."""
+    """A live source of given sound; an empty piece ends it."""
 
     def __init__(self) -> None:
         super().__init__("spoken", live=True)
@@ -37,7 +37,7 @@ class Spoken(Source):
 
 
 class Link:
-    """A forwarder with a source on one side, and whoever listens on the other."""
+    """A forwarder between a source and a listener."""
 
     def __init__(self, path: Path, source: Source | None = None) -> None:
         self.path = path
@@ -74,7 +74,7 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "mic.sock"
 
 
-async def test_sound_arrives_exactly_when_nobody_is_late(path: Path) -> None:
+async def test_forwarded_sound_arrives_unchanged(path: Path) -> None:
     listener = LaptopMicrophone("socket", path)
     hearing = asyncio.ensure_future(take(listener, PIECE))
     link = Link(path)
@@ -89,7 +89,7 @@ async def test_sound_arrives_exactly_when_nobody_is_late(path: Path) -> None:
     await listener.close()
 
 
-async def test_what_is_said_while_nobody_listens_is_never_heard(path: Path) -> None:
+async def test_sound_without_a_listener_is_dropped(path: Path) -> None:
     link = Link(path)
     assert "Tangy does not listen yet" in await link.said()
     for _ in range(20):
@@ -103,7 +103,7 @@ async def test_what_is_said_while_nobody_listens_is_never_heard(path: Path) -> N
     await listener.close()
 
 
-async def test_a_listener_that_is_late_hears_the_newest_and_not_the_whole(path: Path) -> None:
+async def test_a_late_listener_hears_only_the_newest_sound(path: Path) -> None:
     listener = LaptopMicrophone("socket", path)
     first = asyncio.ensure_future(take(listener, 2))
     link = Link(path)
@@ -122,7 +122,7 @@ async def test_a_listener_that_is_late_hears_the_newest_and_not_the_whole(path: 
     await listener.close()
 
 
-async def test_sound_that_waited_on_the_way_is_cut_to_its_end(path: Path) -> None:
+async def test_delayed_sound_is_cut_to_its_newest_part(path: Path) -> None:
     listener = LaptopMicrophone("socket", path)
     hearing = asyncio.ensure_future(take(listener, 2))
     link = Link(path)
@@ -137,7 +137,7 @@ async def test_sound_that_waited_on_the_way_is_cut_to_its_end(path: Path) -> Non
     await listener.close()
 
 
-async def test_a_program_that_is_started_again_is_found_again(path: Path) -> None:
+async def test_the_forwarder_reconnects_to_a_restarted_program(path: Path) -> None:
     link = Link(path)
     assert "does not listen yet" in await link.said()
     for number in (1, 2):
@@ -152,7 +152,7 @@ async def test_a_program_that_is_started_again_is_found_again(path: Path) -> Non
     await link.end()
 
 
-async def test_the_last_words_arrive(path: Path) -> None:
+async def test_the_last_sound_before_the_end_arrives(path: Path) -> None:
     listener = LaptopMicrophone("socket", path)
     hearing = asyncio.ensure_future(take(listener, 2_000))
     link = Link(path)
@@ -173,7 +173,7 @@ async def test_a_recording_is_sent_whole_and_waits_for_a_listener(path: Path) ->
     await listener.close()
 
 
-async def test_the_older_of_two_ends_and_does_not_fight_for_its_place(path: Path) -> None:
+async def test_a_newer_forwarder_replaces_the_older_one(path: Path) -> None:
     listener = LaptopMicrophone("socket", path)
     hearing = asyncio.ensure_future(take(listener, 2 * RATE + 4))
     older = Link(path)
@@ -188,7 +188,7 @@ async def test_the_older_of_two_ends_and_does_not_fight_for_its_place(path: Path
     await listener.close()
 
 
-async def test_a_source_that_fails_ends_it_with_its_sentence(path: Path) -> None:
+async def test_a_failing_source_ends_the_forwarder_with_its_reason(path: Path) -> None:
     class Broken(Spoken):
         async def _sound(self) -> Chunks:
             raise SoundError("It is broken.")
@@ -203,7 +203,7 @@ async def test_a_source_that_fails_ends_it_with_its_sentence(path: Path) -> None
     ("speed", "says"),
     [(1.0, ""), (0.9, ""), (5.5, "5.5 times as fast"), (0.5, "0.5 times as fast")],
 )
-async def test_sound_of_another_speed_is_noticed_once(path: Path, speed: float, says: str) -> None:
+async def test_a_wrong_sample_rate_is_reported_once(path: Path, speed: float, says: str) -> None:
     link = Link(path)
     await link.said()
     await link.spoken.say(bytes(2 * RATE * 20))  # what had waited on the way does not count
@@ -217,7 +217,7 @@ async def test_sound_of_another_speed_is_noticed_once(path: Path, speed: float, 
     await link.end()
 
 
-async def test_a_pause_of_the_link_is_no_other_speed(path: Path) -> None:
+async def test_a_pause_is_not_taken_for_a_wrong_sample_rate(path: Path) -> None:
     link = Link(path)
     await link.said()
     for number in range(60):
@@ -227,7 +227,7 @@ async def test_a_pause_of_the_link_is_no_other_speed(path: Path) -> None:
     await link.end()
 
 
-async def test_it_is_known_how_loud_it_is_before_anybody_listens(path: Path) -> None:
+async def test_the_level_is_measured_without_a_listener(path: Path) -> None:
     link = Link(path)
     assert link.forwarder.meter.level == 0.0
     await link.spoken.say(SOUND[:PIECE])

@@ -1,4 +1,4 @@
-"""The meter: a bar that looks right, and what is wrong with the sound."""
+"""The sound meter: the level of its bar, and problems of the sound."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Clock:
 
 
 class Listening:
-    """A meter, and time that passes as sound is fed to it."""
+    """A meter on a clock that advances with the sound."""
 
     def __init__(self) -> None:
         self.clock = Clock()
@@ -68,28 +68,26 @@ def test_the_bar_rises_at_once_and_falls_slowly(on: Listening) -> None:
     assert on.meter.level == 0.0
 
 
-def test_what_was_loudest_lately_can_be_asked(on: Listening) -> None:
+def test_the_meter_gives_the_recent_maximum(on: Listening) -> None:
     on.hear(0.05, pcm(tone(1.0, loud=1.0)))
     on.hear(1.5, SILENCE)
     assert on.meter.loudest(2.0) == pytest.approx(1.0, abs=0.01)
     assert on.meter.loudest(1.0) == 0.0
 
 
-def test_a_bias_of_the_device_is_not_loud(on: Listening) -> None:
+def test_a_constant_bias_counts_as_silence(on: Listening) -> None:
     on.hear(1.0, pcm(np.full(RATE, 0.3)))
     assert on.meter.level == 0.0
 
 
-def test_nothing_is_wrong_with_a_voice(on: Listening) -> None:
+def test_a_normal_voice_has_no_problem(on: Listening) -> None:
     on.hear(5.0, VOICE)
     assert (on.meter.trouble(), on.meter.clipping) == (None, False)
     assert on.meter.seconds_since_sound == on.meter.seconds_since_data == 0.0
 
 
 @pytest.mark.parametrize("sound", [SILENCE, DITHER], ids=["zeros", "the last bit"])
-def test_a_microphone_that_is_off_is_asked_about_after_two_seconds(
-    on: Listening, sound: bytes
-) -> None:
+def test_a_silent_microphone_is_reported_after_two_seconds(on: Listening, sound: bytes) -> None:
     on.hear(3.0, VOICE)
     on.hear(1.9, sound)
     assert wrong(on) != "no sound"
@@ -101,7 +99,7 @@ def test_a_microphone_that_is_off_is_asked_about_after_two_seconds(
     assert on.meter.trouble() is None
 
 
-def test_nothing_at_all_is_told_from_silence(on: Listening) -> None:
+def test_missing_data_is_distinguished_from_silence(on: Listening) -> None:
     on.hear(1.0, VOICE)
     on.clock.now += 2.1
     assert on.meter.trouble() == SoundTrouble("nothing comes", 2)
@@ -109,7 +107,7 @@ def test_nothing_at_all_is_told_from_silence(on: Listening) -> None:
     assert wrong(on) == "no sound"
 
 
-def test_what_touches_the_rails_is_too_loud_for_half_a_second(on: Listening) -> None:
+def test_clipping_is_reported_as_too_loud_for_half_a_second(on: Listening) -> None:
     on.hear(0.5, pcm(np.clip(tone(1.0, loud=1.3), -1, 1)))
     assert on.meter.clipping
     assert wrong(on) == "too loud"
@@ -125,7 +123,7 @@ def test_a_single_click_is_not_too_loud(on: Listening) -> None:
     assert not on.meter.clipping
 
 
-def test_a_quiet_room_is_worth_a_word_only_when_somebody_should_speak(on: Listening) -> None:
+def test_a_quiet_room_is_reported_only_while_a_person_should_speak(on: Listening) -> None:
     on.hear(1.9, ROOM)
     assert on.meter.trouble() is None, "they have only just begun"
     on.hear(0.2, ROOM)
@@ -142,7 +140,7 @@ def test_pauses_between_words_are_not_very_quiet(on: Listening) -> None:
         assert on.meter.trouble() is None
 
 
-def test_a_long_chunk_counts_by_its_end(on: Listening) -> None:
+def test_the_level_of_a_long_chunk_is_that_of_its_end(on: Listening) -> None:
     on.meter.feed(VOICE * 10 + SILENCE)
     assert on.meter.level == 0.0
     on.meter.feed(b"")

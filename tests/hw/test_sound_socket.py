@@ -23,7 +23,7 @@ PATIENCE = 20.0
 
 
 class Listening:
-    """A source that is open, what it has told, and connections to it."""
+    """An open source, its reports, and connections to it."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -84,7 +84,7 @@ async def on(tmp_path: Path) -> Listening:
 
 
 class TestPlace:
-    async def test_nobody_else_may_connect(self, tmp_path: Path) -> None:
+    async def test_the_socket_is_accessible_only_to_its_user(self, tmp_path: Path) -> None:
         folder = tmp_path / "new" / "data"
         source = open_source("socket", folder=folder)
         made = (folder / "mic.sock").lstat()
@@ -95,7 +95,7 @@ class TestPlace:
         await source.close()
         assert os.listdir(folder) == []  # noqa: PTH208
 
-    def test_it_is_never_there_with_another_mode(
+    def test_the_socket_never_exists_with_wider_permissions(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         moved: list[tuple[int, int]] = []
@@ -154,7 +154,7 @@ class TestPlace:
             connect(place.path)
         place.close()
 
-    async def test_a_second_one_is_refused_and_does_not_disturb_the_first(
+    async def test_a_second_listener_is_refused_and_does_not_disturb_the_first(
         self, on: Listening
     ) -> None:
         waiting = asyncio.ensure_future(on.next())
@@ -167,7 +167,7 @@ class TestPlace:
         connection.close()
         await on.source.close()
 
-    async def test_what_a_program_that_died_left_behind_is_replaced(self, tmp_path: Path) -> None:
+    async def test_a_stale_socket_is_replaced(self, tmp_path: Path) -> None:
         path = tmp_path / "mic.sock"
         left = socket.socket(socket.AF_UNIX)
         left.bind(str(path))
@@ -178,7 +178,7 @@ class TestPlace:
         await open_source(f"socket:{path}").close()
         assert not path.exists()
 
-    def test_what_is_something_else_is_left_alone(self, tmp_path: Path) -> None:
+    def test_files_and_sockets_of_other_programs_are_left_alone(self, tmp_path: Path) -> None:
         file, foreign = tmp_path / "file", tmp_path / "foreign"
         file.write_text("kept")
         with socket.socket(socket.AF_UNIX) as other:
@@ -193,7 +193,7 @@ class TestPlace:
         with pytest.raises(SoundError, match="no socket"):
             connect(file)
 
-    async def test_one_that_took_its_place_is_not_removed(self, tmp_path: Path) -> None:
+    async def test_closing_does_not_remove_a_replaced_file(self, tmp_path: Path) -> None:
         path = tmp_path / "mic.sock"
         source = open_source(f"socket:{path}")
         path.unlink()
@@ -201,7 +201,7 @@ class TestPlace:
         await source.close()
         assert path.exists()
 
-    async def test_a_deep_folder_is_no_obstacle(self, tmp_path: Path) -> None:
+    async def test_a_socket_works_in_a_deep_folder(self, tmp_path: Path) -> None:
         on = Listening(tmp_path / ("a" * 100) / ("b" * 100) / "mic.sock")
         waiting = asyncio.ensure_future(on.next())
         with on.connect() as connection:
@@ -209,9 +209,7 @@ class TestPlace:
             assert await waiting == b"deep"
         await on.source.close()
 
-    def test_a_name_too_long_and_a_folder_that_cannot_be_made_are_named(
-        self, tmp_path: Path
-    ) -> None:
+    def test_a_long_name_and_an_impossible_folder_are_refused(self, tmp_path: Path) -> None:
         (tmp_path / "file").touch()
         for path, word in (
             (tmp_path / ("n" * 120), "name is too long"),
@@ -222,7 +220,7 @@ class TestPlace:
 
 
 class TestStreams:
-    async def test_streams_follow_one_another_and_that_is_said(self, on: Listening) -> None:
+    async def test_consecutive_streams_are_heard_and_reported(self, on: Listening) -> None:
         for word in (b"one!", b"two!"):
             waiting = asyncio.ensure_future(on.next())
             with on.connect() as connection:
@@ -242,7 +240,7 @@ class TestStreams:
         with pytest.raises(StopAsyncIteration):
             await gone
 
-    async def test_after_a_stream_it_is_quiet_for_a_second(self, on: Listening) -> None:
+    async def test_a_stream_is_followed_by_a_second_of_silence(self, on: Listening) -> None:
         waiting = asyncio.ensure_future(on.piece())
         with on.connect() as connection:
             connection.send(b"stop")
@@ -264,7 +262,7 @@ class TestStreams:
             assert await waiting == b"wxyz"
         await on.source.close()
 
-    async def test_a_newer_one_takes_over_from_one_that_is_half_open(self, on: Listening) -> None:
+    async def test_a_new_connection_replaces_a_half_open_one(self, on: Listening) -> None:
         waiting = asyncio.ensure_future(on.next())
         with on.connect() as older, on.connect() as between, on.connect() as newer:
             assert await on.reads(older, LISTENING + TAKEN)
@@ -276,7 +274,7 @@ class TestStreams:
                 older.send(b"old!")
         await on.source.close()
 
-    async def test_what_an_older_one_had_sent_is_still_heard(self, on: Listening) -> None:
+    async def test_sound_sent_before_a_takeover_is_still_heard(self, on: Listening) -> None:
         waiting = asyncio.ensure_future(on.next())
         with on.connect() as older:
             older.send(b"first")
@@ -287,7 +285,7 @@ class TestStreams:
                 assert [await on.next(), await on.next()] == [b"tt", b"next"]
         await on.source.close()
 
-    async def test_a_reset_is_an_end_like_any_other(self, on: Listening) -> None:
+    async def test_a_connection_reset_ends_a_stream(self, on: Listening) -> None:
         waiting = asyncio.ensure_future(on.next())
         on.connect().close()  # with what it was told unread, or before it is accepted
         with on.connect() as connection:

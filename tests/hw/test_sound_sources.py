@@ -40,7 +40,7 @@ class TestNames:
         assert (source.name, source.live) == (str(path), False)
         assert await heard(source) == SOUND
 
-    async def test_a_recording_is_spoken_piece_by_piece_once_it_is_begun(self) -> None:
+    async def test_a_recording_plays_in_pieces_after_its_start(self) -> None:
         source = Recording("two.wav", SOUND[:9_600]).spoken()
         assert source.live
         first = asyncio.ensure_future(anext(source))
@@ -63,7 +63,7 @@ class TestNames:
             ("socket", "no data folder"),
         ],
     )
-    def test_what_cannot_be_used_is_refused_at_once(self, name: str, word: str) -> None:
+    def test_an_unusable_source_is_refused_at_once(self, name: str, word: str) -> None:
         with pytest.raises(SoundError, match=word):
             open_source(name)
 
@@ -98,14 +98,14 @@ class TestStandardInput:
         [SOUND, SOUND + b"\x07", wav(SOUND, size=0xFFFFFFFF), wav(SOUND, extensible=True)],
         ids=["raw", "half a sample more", "streamed WAV", "extensible WAV"],
     )
-    async def test_it_may_be_raw_or_a_wav(
+    async def test_standard_input_may_be_raw_or_wav(
         self, piped: Callable[..., Source], content: bytes
     ) -> None:
         source = piped(content)
         assert source.live
         assert await heard(source) == SOUND
 
-    async def test_a_wav_of_another_kind_is_heard_when_it_is_complete_and_that_is_said(
+    async def test_a_wav_of_another_format_is_converted_at_its_end(
         self, piped: Callable[..., Source]
     ) -> None:
         sound = written(np.repeat(tone(0.5, 48_000), 2), 24)
@@ -115,7 +115,7 @@ class TestStandardInput:
         (sentence,) = told
         assert "48,000 samples a second, 2 channels, 24 bits" in sentence
 
-    async def test_for_somebody_who_speaks_it_is_refused(
+    async def test_another_format_is_refused_for_live_speech(
         self, piped: Callable[..., Source]
     ) -> None:
         source = piped(wav(bytes(10_000), rate=44_100, channels=2), convert=False)
@@ -133,7 +133,7 @@ class TestStandardInput:
             (b"FORM" + bytes(3_000), "AIFF"),
         ],
     )
-    async def test_what_is_obviously_no_such_sound_is_refused(
+    async def test_input_that_is_no_sound_is_refused(
         self, piped: Callable[..., Source], content: bytes, word: str
     ) -> None:
         with pytest.raises(SoundError, match=word) as refused:
@@ -141,13 +141,13 @@ class TestStandardInput:
         assert "\n" not in str(refused.value)
 
     @pytest.mark.parametrize("loud", [0.0, 0.0001, 0.003, 0.1, 0.9])
-    def test_sound_and_silence_are_never_taken_for_anything_else(self, loud: float) -> None:
+    def test_raw_sound_and_silence_are_never_refused(self, loud: float) -> None:
         noise = np.random.default_rng(3).normal(0, 1e-4, RATE)
         for place in (0, 5_000):
             for sound in (tone(1.0, loud=loud), tone(1.0, loud=loud, hertz=90.0) + noise):
                 assert odd_kind(pcm(sound)[place : place + 2_000]) == ""
 
-    async def test_it_may_be_a_file_which_is_a_recording(self, tmp_path: Path) -> None:
+    async def test_a_file_as_standard_input_is_a_recording(self, tmp_path: Path) -> None:
         path = tmp_path / "two.raw"
         for content in (SOUND, wav(SOUND)):
             path.write_bytes(content)
@@ -156,12 +156,12 @@ class TestStandardInput:
             assert not source.live
             assert await heard(source) == SOUND
 
-    async def test_nothing_is_the_end(self, piped: Callable[..., Source]) -> None:
+    async def test_empty_input_ends_the_source(self, piped: Callable[..., Source]) -> None:
         assert await heard(piped(b"")) == b""
         with open(os.devnull, "rb") as nothing:  # noqa: ASYNC230, PTH123
             assert await heard(open_source("-", stdin=nothing.fileno())) == b""
 
-    def test_a_terminal_a_folder_and_what_is_closed_are_no_sound(self, tmp_path: Path) -> None:
+    def test_terminals_folders_and_closed_descriptors_are_refused(self, tmp_path: Path) -> None:
         parent, child = pty.openpty()
         folder = os.open(tmp_path, os.O_RDONLY)
         try:
@@ -172,7 +172,7 @@ class TestStandardInput:
             for descriptor in (parent, child, folder):
                 os.close(descriptor)
 
-    async def test_whoever_waits_is_let_go_when_it_is_closed(self) -> None:
+    async def test_closing_the_source_ends_a_pending_read(self) -> None:
         ours, theirs = socket.socketpair()
         with ours, theirs:
             source = open_source("-", stdin=ours.fileno())
@@ -183,7 +183,7 @@ class TestStandardInput:
             await source.close()
             assert await asyncio.wait_for(waiting, 10) == b""
 
-    def test_pieces_of_any_size_become_whole_samples(self) -> None:
+    def test_pieces_of_any_size_are_joined_to_whole_samples(self) -> None:
         whole, content = WholeSamples(), bytes(range(200))
         sizes = [1, 1, 3, 2, 5, 0, 88, 99]
         made, place = [], 0
@@ -211,7 +211,7 @@ class TestLocalMicrophone:
 
         return install
 
-    async def test_it_is_recorded_as_the_decoder_hears(
+    async def test_the_microphone_records_in_the_format_of_the_decoder(
         self, record: Callable[..., None], tmp_path: Path
     ) -> None:
         record("exec cat /dev/zero")
@@ -226,7 +226,7 @@ class TestLocalMicrophone:
             words = (tmp_path / "words").read_text()
             assert words == f"-q -t raw -f S16_LE -r 16000 -c 1{more}\n"
 
-    async def test_one_that_is_unplugged_is_told_once_and_waited_for(
+    async def test_an_unplugged_microphone_is_reported_once_and_awaited(
         self, record: Callable[..., None], tmp_path: Path
     ) -> None:
         record(
@@ -259,7 +259,7 @@ class TestLocalMicrophone:
         await source.close()
         assert await listening == SOUND
 
-    async def test_the_recorder_ends_with_the_source_even_if_nobody_took_what_it_sent(
+    async def test_closing_the_source_ends_the_recorder_despite_unread_sound(
         self, record: Callable[..., None], tmp_path: Path
     ) -> None:
         record("exec cat /dev/zero")
@@ -271,7 +271,7 @@ class TestLocalMicrophone:
         with pytest.raises(ProcessLookupError):
             os.kill(int((tmp_path / "pid").read_text()), 0)
 
-    def test_a_machine_without_a_recorder_is_told_what_to_do(
+    def test_a_missing_recorder_is_reported_with_the_package_to_install(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setenv("PATH", str(tmp_path))

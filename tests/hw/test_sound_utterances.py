@@ -19,29 +19,29 @@ class TestPauses:
         assert len(split(bursts(0.5, 0.5, pause=0.3))) == 1
 
     @pytest.mark.parametrize("loud", [0.5, 0.02])
-    def test_quiet_and_loud_voices_are_found(self, loud: float) -> None:
+    def test_quiet_and_loud_voices_are_detected(self, loud: float) -> None:
         quiet = np.zeros(RATE)
         assert len(split(pcm(np.concatenate([quiet, tone(0.6, loud=loud), quiet])))) == 1
 
-    def test_a_recording_that_begins_with_the_voice_is_found(self) -> None:
+    def test_a_voice_from_the_first_sample_is_detected(self) -> None:
         syllables = np.sin(2 * np.pi * 2 * np.arange(RATE) / RATE) ** 2
         assert len(split(pcm(tone(1.0) * syllables))) == 1
 
-    def test_a_hum_is_not_an_utterance_but_a_voice_above_it_is(self) -> None:
+    def test_a_voice_above_a_hum_is_an_utterance_and_the_hum_is_not(self) -> None:
         assert len(split(bursts(0.6, noise=0.03))) == 1
         assert split(bursts(noise=0.03, pause=4.0)) == []
 
-    def test_a_voice_is_found_on_a_device_with_a_bias(self) -> None:
+    def test_a_voice_is_detected_on_a_device_with_a_bias(self) -> None:
         voice = np.frombuffer(bursts(0.6, 0.6), "<i2") / 32_767
         assert len(split(pcm(voice + 0.4))) == 2
 
-    def test_silence_bias_and_clicks_hold_none(self) -> None:
+    def test_silence_bias_and_clicks_are_no_utterances(self) -> None:
         assert split(b"") == []
         assert split(bytes(2 * RATE)) == []
         assert split(pcm(np.full(RATE, 0.3))) == []
         assert split(bursts(0.04)) == split(bursts(0.08)) == []
 
-    def test_what_never_pauses_is_cut(self) -> None:
+    def test_a_voice_without_pauses_is_cut_into_pieces(self) -> None:
         syllables = np.sin(2 * np.pi * 2 * np.arange(20 * RATE) / RATE) ** 2
         found = split(pcm(tone(20) * syllables))
         assert max(len(u) for u in found) / 2 / RATE == pytest.approx(LONGEST, abs=0.02)

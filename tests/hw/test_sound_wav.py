@@ -1,4 +1,4 @@
-"""WAV files: any usual kind is read, and what is none is refused in a sentence."""
+"""WAV files: every usual kind is read, and other files are refused in one sentence."""
 
 from __future__ import annotations
 
@@ -63,18 +63,18 @@ class TestWav:
             (b"", 0.0),
         ],
     )
-    def test_what_a_file_lacks_of_what_it_promises_is_known(
+    def test_the_missing_seconds_of_a_truncated_file_are_known(
         self, content: bytes, missing: float, tmp_path: Path
     ) -> None:
         (tmp_path / "a.wav").write_bytes(content)
         assert seconds_cut_off(tmp_path / "a.wav") == pytest.approx(missing)
         assert seconds_cut_off(tmp_path / "none.wav") == 0
 
-    def test_what_16_khz_cannot_hold_is_cut_off_not_folded(self) -> None:
+    def test_resampling_to_16_khz_does_not_alias(self) -> None:
         made = decode_wav(wav(written(tone(0.5, 48_000, 10_000), 16), rate=48_000), "it")
         assert np.abs(np.frombuffer(made, "<i2"))[1_000:-1_000].max() < 330  # -34 dB
 
-    def test_other_chunks_and_the_sizes_of_streams_are_passed_over(self) -> None:
+    def test_other_chunks_and_stream_sizes_are_ignored(self) -> None:
         listed = b"LIST" + struct.pack("<I", 5) + b"INFOx\0"
         sound = pcm(tone(0.1))
         for content in (wav(sound, before=listed), wav(sound, size=0xFFFFFFFF)):
@@ -93,13 +93,13 @@ class TestWav:
             (6, [0xD5, 0x55, 0xAA, 0x2A, 0xC5], [8, -8, 32_256, -32_256, 264]),
         ],
     )
-    def test_the_codes_of_telephones_are_read(
+    def test_telephone_codecs_are_read(
         self, codec: int, codes: list[int], samples: list[int]
     ) -> None:
         content = wav(bytes(codes), codec=codec, bits=8)
         assert np.frombuffer(decode_wav(content, "it"), "<i2") == pytest.approx(samples, abs=1)
 
-    def test_a_file_that_says_it_is_empty_and_is_not_is_heard_to_its_end(self) -> None:
+    def test_a_file_with_a_zero_length_header_is_read_to_its_end(self) -> None:
         sound = pcm(tone(0.1))
         assert decode_wav(wav(sound, size=0), "it") == sound
 
@@ -121,7 +121,7 @@ class TestWav:
             (b"RIFF\x00\x00\x00\x00WAVEdata\x04\x00\x00\x00abcd", "does not say"),
         ],
     )
-    def test_what_is_no_sound_is_refused_in_a_sentence(
+    def test_a_file_that_is_no_sound_is_refused_in_one_sentence(
         self, tmp_path: Path, content: bytes, word: str
     ) -> None:
         path = tmp_path / "odd.wav"
@@ -132,7 +132,7 @@ class TestWav:
         assert str(refused.value).endswith((".", ".wav."))
         assert "\n" not in str(refused.value)
 
-    def test_files_that_cannot_be_read_are_named(self, tmp_path: Path) -> None:
+    def test_unreadable_files_are_named(self, tmp_path: Path) -> None:
         for path, word in (
             (tmp_path / "none.wav", "no such file"),
             (tmp_path, "not a file"),

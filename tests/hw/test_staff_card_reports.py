@@ -1,4 +1,4 @@
-"""A robot without a camera for cards asks staff how they are, and nobody to move one."""
+"""A robot without a card camera asks staff about the cards, and asks nobody to move one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CALLED = (5, 20, 40)
 
 
 class Staffed:
-    """A world of a robot without a camera, whose staff tell what is in `tells`, one by one."""
+    """The world of a robot without a camera, whose staff give the reports in `tells` in turn."""
 
     def __init__(self, folder: Path) -> None:
         self.link = FakeLink(PEOPLE)
@@ -63,7 +63,7 @@ def staffed(tmp_path: Path) -> Staffed:
     return Staffed(tmp_path)
 
 
-def test_staff_are_asked_on_arrival_and_the_robot_looks_at_no_card(staffed: Staffed) -> None:
+def test_the_robot_asks_staff_on_arrival_and_looks_at_no_card(staffed: Staffed) -> None:
     staffed.visit("missed numbers B-5")
     state = staffed.world.observe()
     assert state.situation.user_state == "missing numbers"
@@ -71,7 +71,7 @@ def test_staff_are_asked_on_arrival_and_the_robot_looks_at_no_card(staffed: Staf
     assert not [do for do, _ in staffed.link.done if do == "card"]
 
 
-def test_a_request_names_the_numbers_that_staff_told_and_is_done_when_they_say_so(
+def test_a_request_names_the_numbers_reported_by_staff_and_ends_with_their_report(
     staffed: Staffed,
 ) -> None:
     staffed.visit("missed numbers B-5, 20")
@@ -82,13 +82,13 @@ def test_a_request_names_the_numbers_that_staff_told_and_is_done_when_they_say_s
     assert staffed.world.observe().situation.user_state == "correctly marked"
 
 
-def test_what_looks_as_before_was_not_followed(staffed: Staffed) -> None:
+def test_an_unchanged_report_counts_as_not_followed(staffed: Staffed) -> None:
     staffed.visit("wrong marks 7")
     staffed.tells = ["wrong marks B7"]
     assert getattr(staffed.do("remove markers", "user1"), "followed", None) is False
 
 
-def test_nobody_is_asked_to_move_a_card_that_no_camera_looks_for(staffed: Staffed) -> None:
+def test_nobody_is_asked_to_move_a_card_without_a_camera(staffed: Staffed) -> None:
     staffed.visit("all correct")
     said = len(staffed.link.said)
     staffed.world.tracker.seen = None  # as after a stop while staff were being asked
@@ -98,7 +98,7 @@ def test_nobody_is_asked_to_move_a_card_that_no_camera_looks_for(staffed: Staffe
     assert staffed.world.observe().situation.user_state == "bingo"
 
 
-def test_a_stop_ends_the_waiting_and_staff_are_asked_no_more(staffed: Staffed) -> None:
+def test_a_stop_ends_the_wait_for_staff(staffed: Staffed) -> None:
     staffed.link.breaks["wait"] = "staff stopped it"
     staffed.visit()
     assert staffed.world.broken
@@ -122,13 +122,11 @@ def test_a_stop_ends_the_waiting_and_staff_are_asked_no_more(staffed: Staffed) -
         ("so so", None),
     ],
 )
-def test_words_tell_a_state_with_the_numbers_it_needs(
-    words: str, told: ReportedCard | None
-) -> None:
+def test_a_report_names_a_state_and_its_numbers(words: str, told: ReportedCard | None) -> None:
     assert read_told(BINGO, words, CALLED) == told
 
 
-def test_every_word_that_is_offered_is_understood(staffed: Staffed) -> None:
+def test_every_offered_phrase_is_understood(staffed: Staffed) -> None:
     eyes = staffed.world.eyes
     assert eyes is not None and eyes.sayable == []
     staffed.visit("all correct")
@@ -137,14 +135,14 @@ def test_every_word_that_is_offered_is_understood(staffed: Staffed) -> None:
     assert all(eyes.tell(words) for words in eyes.sayable)
 
 
-def test_who_sees_a_card_tells_what_can_be_told() -> None:
+def test_a_report_from_a_card_names_its_state_and_numbers() -> None:
     face = BINGO.deck.deal(iter([i / 60 for i in range(60)]).__next__)
     called = [face[0]]
     assert reported_card(BINGO, called, face, 0).numbers == (face[0],)
     assert reported_card(BINGO, called, face, 0b11).state == "incorrectly marked"
 
 
-def test_a_robot_with_a_camera_asks_staff_nothing() -> None:
+def test_a_robot_with_a_camera_does_not_ask_staff() -> None:
     link = FakeLink(PEOPLE)
     world = LiveWorld(
         BINGO, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, pace=0.0

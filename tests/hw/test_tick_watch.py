@@ -1,4 +1,4 @@
-"""A robot whose control was frozen breaks off, and stands until it is told to go on."""
+"""A robot whose control was frozen cancels its command, and stops until staff release it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Asleep:
 
 
 class TestTickWatch:
-    def test_ticks_that_are_a_little_late_are_nothing(self) -> None:
+    def test_slightly_late_ticks_are_no_freeze(self) -> None:
         clock = Asleep()
         watch = TickWatch(clock)
         assert not watch.tick()  # it was not begun
@@ -36,7 +36,7 @@ class TestTickWatch:
             assert not watch.overdue and not watch.tick()
         assert watch.frozen == 0.0
 
-    def test_one_that_is_much_too_late_is_told_until_staff_have_seen_to_it(self) -> None:
+    def test_a_very_late_tick_is_reported_until_staff_acknowledge_it(self) -> None:
         clock = Asleep()
         watch = TickWatch(clock)
         watch.begin()
@@ -46,7 +46,7 @@ class TestTickWatch:
         clock.now += 0.05
         assert not watch.tick() and watch.frozen == 5.0
 
-    def test_its_time_goes_on(self) -> None:
+    def test_the_clock_for_freezes_never_goes_back(self) -> None:
         before = time_awake_and_asleep()
         assert time_awake_and_asleep() >= before
 
@@ -60,7 +60,7 @@ def frozen(one: Spoken) -> None:
 
 
 class TestFrozen:
-    async def test_what_was_under_way_is_given_up_and_it_stands_until_it_is_told(self) -> None:
+    async def test_a_freeze_cancels_the_command_and_stops_the_robot_until_release(self) -> None:
         async with spoken() as one:
             await one.take(id=1, do="go", to=[8.0, 3.0, 0.0])
             await until(lambda: one.robot.going)
@@ -78,7 +78,7 @@ class TestFrozen:
             await one.take(do="release", by=FAULT)
             assert one.state().stopped == "" and one.state().frozen == 0.0
 
-    async def test_it_is_told_even_if_a_drive_is_looked_at_before_the_next_tick(
+    async def test_a_freeze_is_the_reason_even_if_the_drive_is_checked_first(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """After a freeze the program seems to have said nothing for as long."""
@@ -97,7 +97,7 @@ class TestFrozen:
             await until(lambda: one.said)
             assert one.said[0]["failed"] == "it was frozen for 5.0 s"
 
-    async def test_it_is_told_even_if_the_program_was_silent_just_before(
+    async def test_a_freeze_is_the_reason_even_if_the_program_was_silent_before(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         async with spoken() as one:
@@ -110,7 +110,7 @@ class TestFrozen:
             await until(lambda: one.said)
             assert one.said[0]["failed"] == "it was frozen for 5.0 s"
 
-    async def test_it_shows_in_the_link_until_staff_have_seen_to_it(self) -> None:
+    async def test_the_link_reports_a_freeze_until_staff_acknowledge_it(self) -> None:
         async with spoken() as one:
 
             def link() -> tuple[str, object]:
@@ -126,7 +126,7 @@ class TestFrozen:
             assert link() == (OK, None)
             assert one.state().stopped == "it was frozen for 5.0 s"
 
-    async def test_nothing_is_told_before_it_has_looked_how_late_it_is(self) -> None:
+    async def test_a_beat_after_a_freeze_includes_the_freeze(self) -> None:
         async with spoken() as one:
             frozen(one)
             beating = asyncio.create_task(one.process.beat())
@@ -134,7 +134,7 @@ class TestFrozen:
             beating.cancel()
             assert one.said[0]["beat"]["frozen"] == 5.0
 
-    async def test_on_a_bench_in_a_hurry_time_stands_still_and_nothing_is_frozen(self) -> None:
+    async def test_a_stepped_bench_reports_no_freeze(self) -> None:
         async with spoken() as one:
             one.robot.stepped = True
             clock = Asleep()

@@ -1,4 +1,4 @@
-"""A trial of a robot says of each device whether it works, and if not, what is missing."""
+"""A trial of a robot reports for each device whether it works, or what is missing."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def turning(server: ScipServer) -> Iterator[None]:
     task.cancel()
 
 
-async def test_each_device_is_told_in_a_sentence(tmp_path: Path) -> None:
+async def test_each_device_gets_one_sentence(tmp_path: Path) -> None:
     server = ScipServer()
     await server.start()
     robot = driven(
@@ -75,7 +75,7 @@ async def test_each_device_is_told_in_a_sentence(tmp_path: Path) -> None:
     [("70", "cannot measure"), ("", "nothing any more"), ("closed", "broke off")],
     ids=["broken", "silent", "closed"],
 )
-async def test_a_scanner_that_does_not_measure_says_why(
+async def test_a_scanner_that_does_not_measure_gives_its_reason(
     tmp_path: Path, fault: str, says: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tangy_hw.drivers.scip.ANSWER_SECONDS", 0.05)
@@ -92,7 +92,7 @@ async def test_a_scanner_that_does_not_measure_says_why(
     await server.close()
 
 
-async def test_a_robot_without_drivers_lacks_them_all() -> None:
+async def test_a_robot_without_drivers_lacks_every_device() -> None:
     found = await tried(load_robot())
     assert {"base", "laser", "arms", "voice", "stop_button"} <= set(found)
     assert all(one.absent and not one.ok for one in found.values())

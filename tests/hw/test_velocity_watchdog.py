@@ -1,4 +1,4 @@
-"""A base whose robot process hangs or ends: another process tells it to stand."""
+"""The velocity watchdog: a separate process stops the base if the robot process hangs or ends."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ async def watched(
         await watchdog.close()
 
 
-async def test_a_command_to_drive_that_is_not_followed_is_followed_by_one_to_stand(
+async def test_a_drive_command_without_a_successor_is_followed_by_a_stop(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     loop, waits = asyncio.get_running_loop(), list[float]()
@@ -90,7 +90,7 @@ async def test_a_command_to_drive_that_is_not_followed_is_followed_by_one_to_sta
         assert said[0]["stopped"] >= 0.05
 
 
-async def test_a_command_to_stand_is_not_waited_on() -> None:
+async def test_a_stop_command_needs_no_successor() -> None:
     async with listening() as (server, told), watched(server, 0.05) as (watchdog, said):
         await until(lambda: told == [0.0])
         await watchdog.take({"drives": True})
@@ -102,7 +102,7 @@ async def test_a_command_to_stand_is_not_waited_on() -> None:
         assert (told, said) == ([0.0], [])
 
 
-async def test_the_base_is_told_to_stand_when_the_watchdog_ends() -> None:
+async def test_the_watchdog_stops_the_base_when_it_ends() -> None:
     async with listening() as (server, told):
         async with watched(server, 60.0) as (watchdog, said):
             await until(lambda: told == [0.0])
@@ -111,7 +111,7 @@ async def test_the_base_is_told_to_stand_when_the_watchdog_ends() -> None:
         assert said == []
 
 
-async def test_a_base_that_was_out_of_reach_is_told_when_it_is_back() -> None:
+async def test_the_watchdog_stops_a_base_that_reconnects() -> None:
     async with listening() as (server, told), watched(server, 0.05) as (watchdog, said):
         await until(lambda: told == [0.0])
         await watchdog.take({"drives": True})
@@ -120,7 +120,7 @@ async def test_a_base_that_was_out_of_reach_is_told_when_it_is_back() -> None:
         await until(lambda: told == [0.0, 0.0, 0.0])
 
 
-async def test_a_line_that_is_neither_is_refused() -> None:
+async def test_an_invalid_line_is_refused() -> None:
     with pytest.raises(LineError):
         await Watchdog(list[Any]().append).take({"drives": True})
 
@@ -140,7 +140,7 @@ class Noting(VelocityWatchdog):
         self.noted.append(drives)
 
 
-async def test_a_command_that_was_lost_with_the_link_does_not_calm_the_watchdog() -> None:
+async def test_a_command_lost_with_the_link_does_not_reset_the_watchdog() -> None:
     async with listening() as (server, told):
         bridge, watchdog = Rosbridge(server.url), Noting(server.url)
         base = RosBase(bridge, watchdog=watchdog)
@@ -161,7 +161,7 @@ async def test_a_command_that_was_lost_with_the_link_does_not_calm_the_watchdog(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGSTOP, signal.SIGKILL])
-async def test_a_robot_process_that_is_frozen_or_killed_drives_no_further(
+async def test_a_frozen_or_killed_robot_process_stops_the_base(
     how: signal.Signals,
 ) -> None:
     async with listening() as (server, told):

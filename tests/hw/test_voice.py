@@ -1,4 +1,4 @@
-"""A voice speaks in turn, is cut at once, shuts the microphone, and never spoils a game."""
+"""A voice speaks lines in turn, stops at once, mutes the microphone, and never ends a game."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ async def test_lines_are_spoken_in_turn(scene: Scene) -> None:
     assert not scene.told
 
 
-async def test_the_microphone_is_shut_for_each_line_alone(scene: Scene) -> None:
+async def test_the_microphone_is_muted_only_during_a_line(scene: Scene) -> None:
     voice = scene.voice()
     for _ in range(2):
         line = voice.say("hello")
@@ -109,7 +109,7 @@ async def test_the_microphone_is_shut_for_each_line_alone(scene: Scene) -> None:
     assert scene.gate == ["shut", "open"] * 2
 
 
-async def test_hush_cuts_all_and_opens_the_microphone(scene: Scene) -> None:
+async def test_hush_cuts_every_line_and_opens_the_microphone(scene: Scene) -> None:
     voice = scene.voice()
     lines = [voice.say(text) for text in ("one", "two")]
     await scene.clock.somebody_sleeps()
@@ -123,7 +123,7 @@ async def test_hush_cuts_all_and_opens_the_microphone(scene: Scene) -> None:
     assert await after, "what is said later is spoken again"
 
 
-async def test_hush_before_a_line_has_begun_leaves_silence(scene: Scene) -> None:
+async def test_hush_before_the_start_of_a_line_leaves_silence(scene: Scene) -> None:
     voice = scene.voice()
     line = voice.say("one")
     voice.hush()
@@ -137,7 +137,7 @@ async def test_hush_before_a_line_has_begun_leaves_silence(scene: Scene) -> None
     voice.hush()
 
 
-async def test_an_interruption_is_spoken_instead_with_the_microphone_still_shut(
+async def test_an_interruption_replaces_the_line_with_the_microphone_muted(
     scene: Scene,
 ) -> None:
     voice = scene.voice()
@@ -151,7 +151,7 @@ async def test_an_interruption_is_spoken_instead_with_the_microphone_still_shut(
     assert scene.gate == ["shut", "open"]
 
 
-async def test_a_caller_speaks_and_a_person_in_their_own_voice(scene: Scene) -> None:
+async def test_a_call_is_spoken_in_the_preferred_voice(scene: Scene) -> None:
     voice = scene.voice()
     line = voice.say("It is O-69.", VoicePreference(100, "en-gb+f3"))
     await scene.hear()
@@ -161,7 +161,7 @@ async def test_a_caller_speaks_and_a_person_in_their_own_voice(scene: Scene) -> 
     assert scene.speaker.asked[0].endswith("-v en-gb+f3 -s 100")
 
 
-async def test_who_wants_a_voice_that_is_not_there_gets_the_usual_one(scene: Scene) -> None:
+async def test_an_unknown_voice_falls_back_to_the_default(scene: Scene) -> None:
     voice = scene.voice()
     for _ in range(2):
         line = voice.say("hello", VoicePreference(100, "xx"))
@@ -172,14 +172,14 @@ async def test_who_wants_a_voice_that_is_not_there_gets_the_usual_one(scene: Sce
     assert "no voice 'xx'" in scene.told[0]
 
 
-async def test_nothing_to_say_takes_no_time(scene: Scene) -> None:
+async def test_an_empty_line_takes_no_time(scene: Scene) -> None:
     voice = scene.voice()
     assert await voice.say("  ")
     await voice.quiet()
     assert scene.gate == []
 
 
-async def test_without_a_sound_card_it_is_said_once_and_the_text_remains(scene: Scene) -> None:
+async def test_a_missing_sound_card_is_reported_once(scene: Scene) -> None:
     player = Broken()
     voice = scene.voice(player)
     lines = [voice.say(text) for text in ("one", "two")]
@@ -192,7 +192,7 @@ async def test_without_a_sound_card_it_is_said_once_and_the_text_remains(scene: 
     assert voice.silent
 
 
-async def test_without_espeak_it_is_said_once(scene: Scene, tmp_path: Path) -> None:
+async def test_a_missing_synthesiser_is_reported_once(scene: Scene, tmp_path: Path) -> None:
     absent = Synthesiser(tmp_path / "none", which=lambda _: None)
     voice = scene.voice(synthesiser=absent)
     assert not await voice.say("one")
@@ -202,7 +202,7 @@ async def test_without_espeak_it_is_said_once(scene: Scene, tmp_path: Path) -> N
     assert scene.gate == []
 
 
-async def test_a_line_that_cannot_be_made_does_not_keep_the_next_from_being_heard(
+async def test_a_failed_line_does_not_block_the_next(
     scene: Scene,
 ) -> None:
     voice = scene.voice()
@@ -222,7 +222,7 @@ async def test_the_microphone_is_opened_when_the_player_dies(scene: Scene, tmp_p
     assert "status 137" in scene.told[0]
 
 
-async def test_a_game_goes_on_when_the_gate_breaks(scene: Scene) -> None:
+async def test_a_failing_microphone_gate_does_not_end_the_game(scene: Scene) -> None:
     def jam() -> None:
         raise ValueError("jammed")
 
@@ -238,7 +238,7 @@ async def test_a_game_goes_on_when_the_gate_breaks(scene: Scene) -> None:
     scene.gate.clear()
 
 
-async def test_a_cache_that_was_emptied_meanwhile_is_no_fault_of_the_player(scene: Scene) -> None:
+async def test_an_emptied_cache_is_not_reported_as_a_player_fault(scene: Scene) -> None:
     class Emptied(NullPlayer):
         first = True
 
@@ -256,7 +256,7 @@ async def test_a_cache_that_was_emptied_meanwhile_is_no_fault_of_the_player(scen
     assert not scene.told
 
 
-async def test_what_was_made_beforehand_is_not_made_again(scene: Scene) -> None:
+async def test_prerendered_lines_are_not_rendered_again(scene: Scene) -> None:
     voice = scene.voice()
     progress: list[tuple[int, int]] = []
     texts = ("B-1.", "B-2.", "B-3.")
@@ -269,7 +269,7 @@ async def test_what_was_made_beforehand_is_not_made_again(scene: Scene) -> None:
     assert len(scene.speaker.asked) == 3
 
 
-async def test_a_line_does_not_wait_for_what_is_made_beforehand(scene: Scene) -> None:
+async def test_a_line_does_not_wait_for_prerendering(scene: Scene) -> None:
     voice = scene.voice()
     making = voice.prerender([f"text {number}" for number in range(200)])
     line = voice.say("now")
@@ -278,7 +278,7 @@ async def test_a_line_does_not_wait_for_what_is_made_beforehand(scene: Scene) ->
     assert not making.done()
 
 
-async def test_closing_ends_everything(scene: Scene) -> None:
+async def test_closing_ends_lines_and_prerendering(scene: Scene) -> None:
     voice = scene.voice()
     line, later = voice.say("one"), voice.say("two")
     making = voice.prerender([f"text {number}" for number in range(200)])

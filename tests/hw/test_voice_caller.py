@@ -24,7 +24,7 @@ DECK = load_activity("bingo").deck
         ("Mark these: I-16, G-60. Please.", "Mark these: I, 16. I, 1 6. G, 60. G, 6 0. Please."),
     ],
 )
-def test_a_call_is_said_twice_and_then_digit_by_digit(text: str, said: str) -> None:
+def test_a_call_is_spoken_twice_and_then_digit_by_digit(text: str, said: str) -> None:
     assert in_words(as_called(text, DECK)) == said
 
 
@@ -45,7 +45,7 @@ def test_a_call_is_said_twice_and_then_digit_by_digit(text: str, said: str) -> N
         "B-05x",
     ],
 )
-def test_what_is_no_call_of_the_deck_is_left_as_it_is(text: str) -> None:
+def test_text_without_a_call_of_the_deck_is_unchanged(text: str) -> None:
     assert as_called(text, DECK) == (SpokenPiece(text),)
 
 
@@ -63,18 +63,18 @@ def test_only_the_call_is_slow_and_has_pauses() -> None:
     assert "".join(marked.itertext()).split() == ["Now", "O,", "69.", "O,", "6", "9.", "please"]
 
 
-def test_nobody_waits_before_or_after_a_call_that_is_all() -> None:
+def test_a_call_alone_has_no_pauses_around_it() -> None:
     assert "<break" not in marked_up((SpokenPiece("B, 5.", call=True),))
 
 
-def test_there_is_nothing_to_say_of_nothing() -> None:
+def test_an_empty_text_gives_no_speech() -> None:
     for text in ("", " \n", "\x00\u200b"):
         assert as_called(text, DECK) == ()
         assert marked_up(as_called(text, DECK)) == ""
 
 
 @given(st.text())
-def test_any_text_is_well_formed_and_said_whole(text: str) -> None:
+def test_any_text_becomes_complete_and_well_formed_markup(text: str) -> None:
     written = marked_up(as_called(text, DECK))
     if written:
         said = "".join(ElementTree.fromstring(written).itertext())  # noqa: S314

@@ -1,4 +1,4 @@
-"""A player plays to the end, is cut at once, ends with the program, and fails in a sentence."""
+"""A player plays to the end, stops at once, ends with the program, and fails with one sentence."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ async def test_a_wav_is_played_to_its_end(tmp_path: Path, wav: Path) -> None:
     assert player.name == "aplay"
 
 
-async def test_stop_cuts_it_at_once(tmp_path: Path, wav: Path) -> None:
+async def test_stop_ends_playback_at_once(tmp_path: Path, wav: Path) -> None:
     playing = Playing(tmp_path)
     heard = asyncio.create_task(playing.player.play(wav))
     pid = await playing.pid()
@@ -73,7 +73,7 @@ async def test_stop_cuts_it_at_once(tmp_path: Path, wav: Path) -> None:
     playing.player.stop()  # nothing plays, and nothing happens
 
 
-async def test_who_waits_may_give_up(tmp_path: Path, wav: Path) -> None:
+async def test_cancelling_playback_ends_the_player(tmp_path: Path, wav: Path) -> None:
     playing = Playing(tmp_path)
     heard = asyncio.create_task(playing.player.play(wav))
     pid = await playing.pid()
@@ -83,7 +83,7 @@ async def test_who_waits_may_give_up(tmp_path: Path, wav: Path) -> None:
     assert not is_there(pid)
 
 
-async def test_who_gives_up_before_it_has_begun_hears_nothing(tmp_path: Path, wav: Path) -> None:
+async def test_cancelling_before_the_start_plays_nothing(tmp_path: Path, wav: Path) -> None:
     path = program(tmp_path / "aplay", f"echo > '{tmp_path}/begun'; exec sleep 600")
     player = ProgramPlayer([(str(path),)])
     for stop in (False, True):
@@ -127,7 +127,7 @@ async def test_a_player_ends_with_the_program(tmp_path: Path, wav: Path) -> None
         ("kill -9 $$", "No sound comes out of aplay: it ended with status 137."),
     ],
 )  # fmt: skip
-async def test_a_player_that_fails_says_why(
+async def test_a_failing_player_gives_its_reason(
     tmp_path: Path, wav: Path, does: str, says: str
 ) -> None:
     player = ProgramPlayer([(str(program(tmp_path / "aplay", does)),)])
@@ -136,14 +136,14 @@ async def test_a_player_that_fails_says_why(
     assert str(failed.value) == says
 
 
-async def test_a_player_that_never_ends_has_failed(tmp_path: Path) -> None:
+async def test_a_hanging_player_counts_as_failed(tmp_path: Path) -> None:
     path = program(tmp_path / "aplay", "exec sleep 600")
     player = ProgramPlayer([(str(path),)], late=0.2)
     with pytest.raises(PlayerError, match="the device may be in use"):
         await player.play(tmp_path / "none.wav")
 
 
-async def test_the_next_player_is_tried_and_kept(tmp_path: Path, wav: Path) -> None:
+async def test_the_next_player_is_tried_and_remembered(tmp_path: Path, wav: Path) -> None:
     bad = program(tmp_path / "aplay", f"echo >> '{tmp_path}/tried'; exit 1")
     good = program(tmp_path / "paplay", "exit 0")
     player = ProgramPlayer([(str(bad), "-q"), (str(good),)])
@@ -190,13 +190,13 @@ def test_a_sink_is_opened_by_its_name() -> None:
         ("auto", "No program that plays sound is installed"),
     ],
 )
-def test_a_sink_that_is_not_there_is_refused(sink: str, says: str) -> None:
+def test_an_unknown_sink_is_refused(sink: str, says: str) -> None:
     with pytest.raises(PlayerError) as refused:
         open_player(sink, lambda _: None)
     assert says in str(refused.value)
 
 
-def test_the_output_is_tried_with_silence(tmp_path: Path) -> None:
+def test_the_output_is_tested_with_silence(tmp_path: Path) -> None:
     bad = program(tmp_path / "aplay", "echo 'aplay: main:831: none' >&2; exit 1")
     good = program(tmp_path / "paplay", f"tail -c +45 \"$1\" | tr -d '\\0' > '{tmp_path}/heard'")
     assert examine_output({"aplay": str(bad)}.get) == (

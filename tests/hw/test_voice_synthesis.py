@@ -1,4 +1,4 @@
-"""From a text to a WAV: made once and kept whole, or refused in a sentence that helps."""
+"""From text to WAV: rendered once and cached, or refused in a helpful sentence."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def kept(synthesiser: Synthesiser) -> list[Path]:
     return sorted(synthesiser.folder.iterdir())
 
 
-def test_a_text_is_made_once(synthesiser: Synthesiser, speaker: Speaker) -> None:
+def test_a_text_is_rendered_once(synthesiser: Synthesiser, speaker: Speaker) -> None:
     first = synthesiser.render(TRICKY)
     assert synthesiser.render(TRICKY) == first
     assert kept(synthesiser) == [first]
@@ -46,13 +46,13 @@ def test_a_text_is_made_once(synthesiser: Synthesiser, speaker: Speaker) -> None
     assert wav_seconds(first) == pytest.approx(2.0), "the true length is written into it"
 
 
-def test_a_text_is_never_taken_for_an_option(synthesiser: Synthesiser, speaker: Speaker) -> None:
+def test_a_text_is_never_parsed_as_an_option(synthesiser: Synthesiser, speaker: Speaker) -> None:
     synthesiser.render(TRICKY)
     assert speaker.heard == [TRICKY]
     assert speaker.asked == ["--stdin --stdout -m -z -b 1 -v en-us -s 140"]
 
 
-def test_text_voice_rate_and_version_each_make_another(
+def test_text_voice_rate_and_version_identify_a_cached_file(
     synthesiser: Synthesiser, speaker: Speaker
 ) -> None:
     made = {
@@ -72,14 +72,14 @@ def test_text_voice_rate_and_version_each_make_another(
     assert newer.render("<speak>a</speak>") not in made
 
 
-def test_only_the_user_can_listen_to_what_is_kept(synthesiser: Synthesiser) -> None:
+def test_cached_speech_is_readable_only_by_its_user(synthesiser: Synthesiser) -> None:
     path = synthesiser.render(TRICKY)
     assert path.stat().st_mode & 0o777 == 0o600
     assert synthesiser.folder.stat().st_mode & 0o777 == 0o700
 
 
 @pytest.mark.parametrize("broken", [b"", b"RIFF", from_pipe(0.1), b"\0" * 500])
-def test_a_broken_file_is_made_again(
+def test_a_broken_cached_file_is_rendered_again(
     synthesiser: Synthesiser, speaker: Speaker, broken: bytes
 ) -> None:
     path = synthesiser.render(TRICKY)
@@ -99,7 +99,7 @@ def test_a_broken_file_is_made_again(
         ("f3", "no voice 'f3'"),
     ],
 )
-def test_a_voice_that_is_not_there_is_refused(
+def test_an_unknown_voice_is_refused(
     synthesiser: Synthesiser, speaker: Speaker, voice: str, says: str
 ) -> None:
     with pytest.raises(NoSuchVoice) as refused:
@@ -108,12 +108,12 @@ def test_a_voice_that_is_not_there_is_refused(
     assert not speaker.asked
 
 
-def test_the_wider_languages_are_voices_too(synthesiser: Synthesiser) -> None:
+def test_regional_languages_are_voices_too(synthesiser: Synthesiser) -> None:
     assert synthesiser.voices["en"] == "English (Great Britain)", "the one with the lowest number"
     synthesiser.render(TRICKY, VoicePreference(None, "en+f3"))
 
 
-def test_where_espeak_is_absent_that_is_the_reason(tmp_path: Path) -> None:
+def test_a_missing_synthesiser_is_the_reason(tmp_path: Path) -> None:
     synthesiser = Synthesiser(tmp_path / "cache", which=lambda _: None)
     assert synthesiser.reason == ABSENT
     with pytest.raises(VoiceError, match="not installed"):
@@ -131,7 +131,7 @@ def test_where_espeak_is_absent_that_is_the_reason(tmp_path: Path) -> None:
         ("printf RIFF", "espeak-ng made no sound of it."),
     ],
 )
-def test_a_synthesiser_that_fails_is_told_in_a_sentence(
+def test_a_failing_synthesiser_is_reported_in_one_sentence(
     speaker: Speaker, tmp_path: Path, does: str, says: str
 ) -> None:
     synthesiser = Synthesiser(tmp_path / "cache", which=speaker.which)
@@ -144,7 +144,7 @@ def test_a_synthesiser_that_fails_is_told_in_a_sentence(
     assert not synthesiser.folder.exists() or not kept(synthesiser)
 
 
-def test_a_synthesiser_that_hangs_is_ended_with_its_children(
+def test_a_hanging_synthesiser_is_killed_with_its_children(
     speaker: Speaker, tmp_path: Path
 ) -> None:
     os.mkfifo(tmp_path / "held")
@@ -158,7 +158,7 @@ def test_a_synthesiser_that_hangs_is_ended_with_its_children(
     os.close(held)
 
 
-def test_what_is_being_made_can_be_ended(speaker: Speaker, tmp_path: Path) -> None:
+def test_a_running_synthesis_can_be_ended(speaker: Speaker, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "started")
     program(speaker.path, f"echo > '{tmp_path}/started'; exec sleep 60")
     synthesiser = Synthesiser(tmp_path / "cache", which=speaker.which)
@@ -178,14 +178,14 @@ def test_what_is_being_made_can_be_ended(speaker: Speaker, tmp_path: Path) -> No
     assert len(failed) == 1
 
 
-def test_a_folder_that_cannot_be_written_to_is_told(speaker: Speaker, tmp_path: Path) -> None:
+def test_an_unwritable_cache_folder_is_reported(speaker: Speaker, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     synthesiser = Synthesiser(tmp_path / "file" / "in it", which=speaker.which)
     with pytest.raises(VoiceError, match="cannot be kept there"):
         synthesiser.render(TRICKY)
 
 
-def test_the_oldest_go_when_there_is_no_room(speaker: Speaker, tmp_path: Path) -> None:
+def test_the_oldest_files_are_removed_from_a_full_cache(speaker: Speaker, tmp_path: Path) -> None:
     one = 44 + len(from_pipe(2.0)) - 44
     synthesiser = Synthesiser(tmp_path / "cache", which=speaker.which, most_bytes=10 * one)
     made = [synthesiser.render(f"<speak>{n}</speak>") for n in range(10)]
@@ -199,7 +199,7 @@ def test_the_oldest_go_when_there_is_no_room(speaker: Speaker, tmp_path: Path) -
     assert not {made[1], made[2]} & left
 
 
-def test_what_was_left_unfinished_counts_and_goes_too(speaker: Speaker, tmp_path: Path) -> None:
+def test_unfinished_files_count_and_are_removed_too(speaker: Speaker, tmp_path: Path) -> None:
     synthesiser = Synthesiser(tmp_path / "cache", which=speaker.which, most_bytes=100_000)
     synthesiser.folder.mkdir()
     unfinished = synthesiser.folder / "x.tmp"
@@ -209,7 +209,7 @@ def test_what_was_left_unfinished_counts_and_goes_too(speaker: Speaker, tmp_path
     assert kept(synthesiser) == [path]
 
 
-def test_names_that_were_spoken_can_be_forgotten(synthesiser: Synthesiser) -> None:
+def test_cached_speech_with_names_can_be_deleted(synthesiser: Synthesiser) -> None:
     synthesiser.clear()
     synthesiser.render(TRICKY)
     synthesiser.clear()
@@ -238,7 +238,7 @@ def test_two_programs_and_many_threads_share_a_folder(speaker: Speaker, tmp_path
         (lambda speaker: lambda _: None, ("", ABSENT)),
     ],
 )
-def test_the_voice_is_examined_by_a_word(
+def test_the_voice_is_tested_with_a_word(
     speaker: Speaker,
     which: Callable[[Speaker], Callable[[str], str | None]],
     found: tuple[str, str],
@@ -246,24 +246,24 @@ def test_the_voice_is_examined_by_a_word(
     assert examine_voice(which(speaker)) == found
 
 
-def test_a_voice_that_is_there_and_fails_is_found(speaker: Speaker) -> None:
+def test_a_failing_voice_is_noticed(speaker: Speaker) -> None:
     program(speaker.path, "exit 1")
     named, problem = examine_voice(speaker.which)
     assert named == "espeak-ng"
     assert problem == "espeak-ng failed: status 1; what Tangy says is shown as text."
 
 
-def test_a_program_that_cannot_be_started_is_told(tmp_path: Path) -> None:
+def test_a_program_that_cannot_start_is_reported(tmp_path: Path) -> None:
     synthesiser = Synthesiser(tmp_path, which=lambda _: str(tmp_path))
     with pytest.raises(VoiceError, match="cannot be started"):
         synthesiser.render(TRICKY)
 
 
-def test_what_is_no_wav_has_no_length(tmp_path: Path) -> None:
+def test_an_invalid_wav_has_length_zero(tmp_path: Path) -> None:
     (tmp_path / "x.wav").write_bytes(b"RIFF")
     assert wav_seconds(tmp_path / "x.wav") == wav_seconds(tmp_path / "none.wav") == 0.0
 
 
-def test_a_text_without_end_is_not_spoken(synthesiser: Synthesiser) -> None:
+def test_an_overlong_text_is_refused(synthesiser: Synthesiser) -> None:
     with pytest.raises(VoiceError, match="5,000 characters"):
         synthesiser.render(f"<speak>{'a' * 5_000}</speak>")

@@ -1,4 +1,4 @@
-"""What the robot says to people for whom it waits: soon, once, and again only after a while."""
+"""Explanations to people who block the robot: soon, once, and again only after a while."""
 
 from __future__ import annotations
 
@@ -30,26 +30,26 @@ async def said(yields_to: list[BlockingPerson], *, halted: bool = False) -> list
     return heard
 
 
-async def test_who_is_waited_for_hears_why_within_seconds() -> None:
+async def test_a_person_who_blocks_the_robot_hears_why_within_seconds() -> None:
     ((at, words),) = await said(["walking"] * 40)
     assert words == WORDS["walking"] and AFTER_SECONDS <= at <= LONGEST
 
 
-async def test_who_only_passes_hears_nothing() -> None:
+async def test_a_passing_person_hears_nothing() -> None:
     assert await said([*["walking"] * 8, *[""] * 5] * 3) == []  # type: ignore[list-item]
 
 
-async def test_the_same_is_said_again_only_after_a_while() -> None:
+async def test_an_explanation_is_repeated_only_after_a_while() -> None:
     heard = await said(["standing"] * 200)
     assert [words for _, words in heard] == [WORDS["standing"]] * 3
     assert heard[1][0] - heard[0][0] >= AGAIN_SECONDS
 
 
-async def test_a_robot_that_is_stopped_meanwhile_is_quiet_and_lives() -> None:
+async def test_a_robot_stopped_in_the_meantime_says_nothing_more() -> None:
     assert len(await said(["walking"] * 30, halted=True)) == 1
 
 
-async def test_without_words_nothing_is_said() -> None:
+async def test_an_activity_without_words_gives_no_explanation() -> None:
     explanations = WaitExplanations({}, lambda text: asyncio.sleep(0))
     for tick in range(60):
         explanations.note("walking", tick / 10)

@@ -1,4 +1,4 @@
-"""The watchdogs: what a robot's devices say, how old it is, and whether it may drive."""
+"""The watchdogs: the state and age of the devices decide whether the robot may drive."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def label(device: str) -> str:
     return ROBOT.devices[device].label
 
 
-def test_every_device_of_the_profile_has_a_reading_and_it_is_the_newest() -> None:
+def test_every_device_of_the_profile_has_its_newest_reading() -> None:
     counts = {device: count(1) for device in ROBOT.devices}
     dogs = Watchdogs(
         ROBOT,
@@ -44,13 +44,13 @@ def test_every_device_of_the_profile_has_a_reading_and_it_is_the_newest() -> Non
         assert dogs.health() == tuple(Reading(device, age=age) for device in ROBOT.devices)
 
 
-def test_a_device_that_is_not_there_holds_nothing_up() -> None:
+def test_a_missing_device_does_not_stop_the_robot() -> None:
     dogs = Watchdogs(ROBOT, {})
     assert dogs.health() == tuple(Reading(device) for device in ROBOT.devices)
     assert dogs.hazard() == ""
 
 
-def test_a_robot_that_is_well_may_drive() -> None:
+def test_a_healthy_robot_may_drive() -> None:
     assert Watchdogs(ROBOT, saying()).hazard() == ""
 
 
@@ -58,42 +58,40 @@ def test_a_robot_that_is_well_may_drive() -> None:
 @pytest.mark.parametrize(
     ("state", "why"), [(ERROR, "has an error"), (STALE, "says nothing"), (WARN, "")]
 )
-def test_it_must_not_drive_by_a_device_that_is_not_well(
-    device: str, state: DeviceState, why: str
-) -> None:
+def test_a_failing_device_stops_the_robot(device: str, state: DeviceState, why: str) -> None:
     assert hazard(Reading(device, state=state)) == (f"{label(device)} {why}" if why else "")
 
 
 @pytest.mark.parametrize("device", NEEDED)
 @pytest.mark.parametrize("state", [OK, WARN])
-def test_it_must_not_drive_by_data_that_is_too_old(device: str, state: DeviceState) -> None:
+def test_stale_data_stops_the_robot(device: str, state: DeviceState) -> None:
     fresh = ROBOT.devices[device].stale_after
     assert hazard(Reading(device, age=fresh, state=state)) == ""
     assert hazard(Reading(device, age=fresh + 0.01, state=state)) == f"{label(device)} says nothing"
 
 
-def test_what_a_device_says_of_itself_is_told_before_its_age() -> None:
+def test_the_state_of_a_device_is_reported_before_its_age() -> None:
     assert hazard(Reading("base", age=1e6, state=ERROR)) == f"{label('base')} has an error"
 
 
 @pytest.mark.parametrize("device", OTHERS)
 @pytest.mark.parametrize("state", [ERROR, STALE])
-def test_it_may_drive_without_a_voice_or_a_camera(device: str, state: DeviceState) -> None:
+def test_a_robot_without_voice_or_camera_may_drive(device: str, state: DeviceState) -> None:
     assert hazard(Reading(device, age=1e6, state=state)) == ""
 
 
-def test_it_must_not_drive_with_the_stop_pressed() -> None:
+def test_a_pressed_emergency_stop_stops_the_robot() -> None:
     assert hazard(Reading("stop_button", facts={"latched": True})) == "emergency stop is pressed"
     assert hazard(Reading("stop_button", facts={"latched": False})) == ""
 
 
-def test_it_must_not_drive_with_the_laser_covered() -> None:
+def test_a_covered_laser_stops_the_robot() -> None:
     covered = Reading("laser", facts={"near_share": DARK + 0.01})
     assert hazard(covered) == "laser scanner is covered"
     assert hazard(Reading("laser", facts={"near_share": DARK})) == ""
 
 
-def test_it_must_not_drive_while_the_laser_sees_nothing_or_the_same_again_and_again() -> None:
+def test_a_laser_without_variety_stops_the_robot() -> None:
     blind = Reading("laser", facts={"near_share": 0.0, "variety": BLIND - 0.001})
     assert hazard(blind) == "laser scanner sees nothing new"
     assert hazard(Reading("laser", facts={"near_share": 0.0, "variety": 0})) != ""
@@ -101,7 +99,7 @@ def test_it_must_not_drive_while_the_laser_sees_nothing_or_the_same_again_and_ag
     assert hazard(Reading("laser", facts={"near_share": 0.0})) == ""  # a second is not over yet
 
 
-def test_it_stands_by_the_limits_by_which_a_covered_laser_is_diagnosed() -> None:
+def test_the_limits_match_the_diagnosis_of_a_covered_laser() -> None:
     rule = load_faults(ROBOT).rule("laser-occluded")
     assert {(one.key, one.test, one.value) for (one,) in rule.when} == {
         ("laser.near_share", "above", DARK),
@@ -110,7 +108,7 @@ def test_it_stands_by_the_limits_by_which_a_covered_laser_is_diagnosed() -> None
 
 
 @pytest.mark.parametrize(("state", "why"), [(ERROR, "has an error"), (STALE, "says nothing")])
-def test_a_device_can_be_taken_for_broken_whatever_it_says(state: DeviceState, why: str) -> None:
+def test_a_device_can_be_set_to_failed_despite_its_reading(state: DeviceState, why: str) -> None:
     dogs = Watchdogs(ROBOT, saying())
     dogs.fail("navigator", state)
     assert dogs.hazard() == f"navigation {why}"
@@ -121,15 +119,15 @@ def test_a_device_can_be_taken_for_broken_whatever_it_says(state: DeviceState, w
 
 
 @pytest.mark.parametrize("age", [math.inf, math.nan])
-def test_an_age_without_an_end_is_too_old_for_any_device(age: float) -> None:
+def test_an_infinite_age_is_stale_for_every_device(age: float) -> None:
     assert hazard(Reading("base", age=age)) == f"{label('base')} says nothing"
     assert Watchdogs(ROBOT, {}).state(Reading("lift", age=age)) == STALE
 
 
-def test_a_measurement_that_is_no_number_is_an_error() -> None:
+def test_a_measurement_of_nan_is_an_error() -> None:
     broken = Reading("laser", facts={"near_share": math.nan})
     assert hazard(broken) == f"{label('laser')} has an error"
 
 
-def test_of_a_device_that_no_profile_knows_the_age_says_nothing() -> None:
+def test_the_age_of_an_unknown_device_is_ignored() -> None:
     assert Watchdogs(ROBOT, {}).state(Reading("lift", age=1e6, state=WARN)) == WARN

@@ -1,4 +1,4 @@
-"""Children that speak JSON lines: whatever one of them does, or is told, is known and bounded."""
+"""Child processes that speak JSON lines: every failure is reported and bounded in time."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ Echo = Callable[..., WorkerProcess]
 
 
 class TestSupervisor:
-    def test_answers_come_by_id_whatever_their_order_and_bytes_follow(self, echo: Echo) -> None:
+    def test_answers_are_matched_by_id_in_any_order(self, echo: Echo) -> None:
         heard: list[tuple[dict[str, Any], bytes]] = []
         worker = echo(hear=lambda said, after: heard.append((said, after)))
         first, second = worker.ask({"number": 1}), worker.ask({"after": 1 << 20})
@@ -90,12 +90,12 @@ class TestSupervisor:
         assert answer_of(first) == {"id": 1, "number": 1}
         assert heard[1][1] == b"A" * (1 << 20)
 
-    def test_it_leads_a_session_and_a_group_of_its_own(self, echo: Echo) -> None:
+    def test_a_child_leads_its_own_session_and_process_group(self, echo: Echo) -> None:
         worker = echo()
         assert worker.pid is not None
         assert os.getsid(worker.pid) == os.getpgid(worker.pid) == worker.pid
 
-    def test_an_answer_that_nobody_waits_for_any_more_is_forgotten(self, echo: Echo) -> None:
+    def test_a_late_answer_is_dropped(self, echo: Echo) -> None:
         worker = echo()
         asked = worker.ask({"say": ""})
         with pytest.raises(TooLate):
@@ -105,7 +105,7 @@ class TestSupervisor:
         worker.tell({"id": 1, "late": True})
         assert answer_of(worker.ask({"next": 1}))["next"] == 1
 
-    def test_what_is_made_of_answers_may_be_an_error(self, echo: Echo) -> None:
+    def test_the_reader_of_an_answer_may_raise(self, echo: Echo) -> None:
         def read(said: dict[str, Any]) -> Any:
             if "failed" in said:
                 raise LookupError(said["failed"])
@@ -121,7 +121,7 @@ class TestSupervisor:
     @pytest.mark.parametrize(
         "says", ["hello\n", "[7]\n", '"a"\n', "[" * 100_000 + "\n", '{"bytes": -1}\n', '{"bytes":']
     )
-    def test_garbage_from_it_ends_it_and_whoever_asked_is_told(self, echo: Echo, says: str) -> None:
+    def test_garbage_ends_the_child_and_its_pending_requests(self, echo: Echo, says: str) -> None:
         worker = echo()
         asked = worker.ask({"say": says})
         worker.tell({"die": 0}) if says.endswith(":") else None
@@ -133,20 +133,20 @@ class TestSupervisor:
         assert worker.over.result(PATIENCE) == worker.how != ""
 
     @pytest.mark.parametrize("asks", [{"say": "hello\n"}, {"flood": 3 << 20}, {"say": "[7]\n"}])
-    def test_garbage_from_one_that_is_forgiven_is_left_out(
+    def test_garbage_from_a_forgiving_child_is_ignored(
         self, echo: Echo, asks: dict[str, Any]
     ) -> None:
         worker = echo(forgiving=True, longest=1 << 20)
         worker.tell(asks)
         assert answer_of(worker.ask({"still": "there"}))["still"] == "there"
 
-    def test_a_line_without_end_from_it_ends_it(self, echo: Echo) -> None:
+    def test_an_endless_line_ends_the_child(self, echo: Echo) -> None:
         worker = echo(longest=1 << 20)
         with pytest.raises(WorkerError, match="signal 9"):
             answer_of(worker.ask({"flood": 3 << 20}))
 
     @pytest.mark.parametrize(("die", "how"), [({"die": 3}, "status 3"), ({"deaf": True}, "signal")])
-    def test_its_end_is_told_with_how_it_came(
+    def test_the_end_of_a_child_is_reported_with_its_status(
         self, echo: Echo, die: dict[str, Any], how: str, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr("tangy_hw.worker_process.LINGERS_SECONDS", 0.1)
@@ -160,11 +160,11 @@ class TestSupervisor:
         assert told == [worker.how]
         assert worker.tell({"too": "late"}) is None
 
-    def test_one_that_cannot_be_started_says_why(self, tmp_path: Path) -> None:
+    def test_a_child_that_cannot_start_raises_the_reason(self, tmp_path: Path) -> None:
         with pytest.raises(WorkerError, match="No such file"):
             WorkerProcess((str(tmp_path / "none"),))
 
-    def test_one_that_hangs_takes_its_time_and_no_more(self, echo: Echo) -> None:
+    def test_a_hanging_child_is_killed_after_the_timeout(self, echo: Echo) -> None:
         worker = echo()
         worker.tell({"hang": True})
         written = worker.tell("x" * (1 << 20))  # more than its pipe holds
@@ -176,14 +176,14 @@ class TestSupervisor:
         assert time.monotonic() - began < AT_ONCE
         assert worker.how == "signal 9" and written.result(PATIENCE) is None
 
-    def test_what_was_told_before_the_end_is_still_heard(self, echo: Echo) -> None:
+    def test_requests_sent_before_the_end_are_still_answered(self, echo: Echo) -> None:
         worker = echo()
         asked = [worker.ask({"number": number}) for number in range(100)]
         worker.stop(PATIENCE)
         assert [answer_of(one)["number"] for one in asked] == list(range(100))
         assert worker.how == "status 0"
 
-    async def test_in_a_loop_all_is_told_there(self, echo: Echo) -> None:
+    async def test_callbacks_run_in_the_given_loop(self, echo: Echo) -> None:
         threads: list[int] = []
         loop = asyncio.get_running_loop()
         worker = echo(
@@ -197,7 +197,7 @@ class TestSupervisor:
         assert threads == [threading.get_ident()] * 2
         assert worker.how == "status 0"
 
-    async def test_a_stop_in_a_loop_that_is_called_off_kills_it(self, echo: Echo) -> None:
+    async def test_a_cancelled_stop_kills_the_child(self, echo: Echo) -> None:
         worker = echo(loop=asyncio.get_running_loop())
         worker.tell({"hang": True})
         stopping = asyncio.create_task(worker.stopped(PATIENCE))
@@ -205,7 +205,7 @@ class TestSupervisor:
         stopping.cancel()
         await until(lambda: worker.how == "signal 9")
 
-    def test_its_log_takes_what_libraries_print_and_one_that_cannot_be_is_no_matter(
+    def test_the_log_takes_standard_output_and_is_optional(
         self, echo: Echo, tmp_path: Path
     ) -> None:
         for log in (tmp_path / "log", tmp_path / "none" / "log"):
@@ -217,7 +217,7 @@ class TestSupervisor:
 
 @dataclass(frozen=True)
 class Child:
-    """One of our children: what it is begun with, asked, and answers then."""
+    """One of our child processes: its first lines, a request, and the answer."""
 
     command: Sequence[str]
     begins: Sequence[Mapping[str, Any]]
@@ -248,7 +248,7 @@ def child(request: pytest.FixtureRequest, tmp_path: Path) -> Child:
 
 class TestChildren:
     @pytest.mark.slow
-    def test_each_bad_line_is_answered_by_an_error_and_ends_nothing(self, child: Child) -> None:
+    def test_each_invalid_line_is_answered_with_an_error(self, child: Child) -> None:
         said: Queue[dict[str, Any]] = Queue()
         worker = WorkerProcess(child.command, hear=lambda told, _: said.put(told))
 
@@ -279,14 +279,14 @@ class TestChildren:
         assert not [told for told in said.queue if "failed" in told]
 
     @pytest.mark.slow
-    def test_it_writes_down_what_it_does(self, child: Child, tmp_path: Path) -> None:
+    def test_a_child_logs_its_work(self, child: Child, tmp_path: Path) -> None:
         worker = WorkerProcess(child.command, log=tmp_path / "log")
         for line in [*child.begins, child.asks]:
             worker.tell(line)
         worker.stop(PATIENCE)
         assert " INFO    tangy_" in (tmp_path / "log").read_text()
 
-    def test_it_ends_when_its_program_is_killed(self, child: Child) -> None:
+    def test_a_child_ends_when_its_program_is_killed(self, child: Child) -> None:
         program = (
             "import json, sys, time\n"
             "from tangy_hw.worker_process import WorkerProcess\n"
@@ -331,14 +331,14 @@ def why(owner: Any) -> str:
 
 
 class TestOwners:
-    """Who keeps a child says how it ended, and starts another."""
+    """The owner of a child reports its end, and starts another."""
 
     @pytest.mark.slow
     @pytest.mark.parametrize(
         ("does", "told"),
         [("dies", "status 3"), ("says garbage", "signal 9"), ("says no end", "signal 9")],
     )
-    async def test_a_child_that_cannot_be_relied_on_is_told_of_and_replaced(
+    async def test_an_unreliable_child_is_reported_and_replaced(
         self, owner: Any, does: str, told: str, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         module = sys.modules[type(owner).__module__]
@@ -359,7 +359,7 @@ class TestOwners:
         assert time.monotonic() - began < AT_ONCE
         assert not runs(pid)
 
-    async def test_a_child_that_is_killed_is_told_of_and_replaced(
+    async def test_a_killed_child_is_reported_and_replaced(
         self, owner: Any, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         module = sys.modules[type(owner).__module__]
