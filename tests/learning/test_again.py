@@ -1,4 +1,4 @@
-"""Steps are done again after undo, games shown again from a step, and guided games cover all."""
+"""Redo after undo, new versions of a game from a step on, and guided games that cover all."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def kept(workspace: Workspace, id: str) -> Demonstration:
     return read_library(workspace.store, workspace.activity.name).entries[id].demonstration
 
 
-def test_what_was_undone_is_done_again_just_as_it_was(workspace: Workspace) -> None:
+def test_redo_restores_an_undone_step_exactly(workspace: Workspace) -> None:
     teaching = begun(workspace)
     steps(teaching, 5)
     before = teaching.demonstration
@@ -69,7 +69,7 @@ def test_what_was_undone_is_done_again_just_as_it_was(workspace: Workspace) -> N
     assert isinstance(teaching.apply(Redo())[0], Refused)
 
 
-def test_a_new_step_ends_what_could_be_done_again(workspace: Workspace) -> None:
+def test_a_new_step_clears_redo(workspace: Workspace) -> None:
     teaching = begun(workspace)
     steps(teaching, 3)
     teaching.apply(Undo())
@@ -77,7 +77,7 @@ def test_a_new_step_ends_what_could_be_done_again(workspace: Workspace) -> None:
     assert isinstance(teaching.apply(Redo())[0], Refused)
 
 
-def test_a_finished_game_is_finished_again_by_redo(workspace: Workspace) -> None:
+def test_redo_finishes_an_undone_game_again(workspace: Workspace) -> None:
     teaching = begun(workspace)
     list(ScriptedTeacher(teaching).demonstrate())
     whole = teaching.demonstration
@@ -87,7 +87,7 @@ def test_a_finished_game_is_finished_again_by_redo(workspace: Workspace) -> None
     assert teaching.demonstration == whole == kept(workspace, whole.id)
 
 
-def test_what_can_be_done_again_is_known_after_a_break(tmp_path: Path) -> None:
+def test_redo_works_after_a_restart(tmp_path: Path) -> None:
     with opened(tmp_path / "data") as workspace:
         teaching = begun(workspace)
         steps(teaching, 4)
@@ -111,7 +111,7 @@ def test_redo_waits_for_an_open_question(workspace: Workspace) -> None:
     assert len(teaching.demonstration.steps) == 1
 
 
-def test_going_back_in_the_present_game_undoes_and_can_be_done_again(workspace: Workspace) -> None:
+def test_going_back_in_the_current_game_can_be_redone(workspace: Workspace) -> None:
     teaching = begun(workspace)
     steps(teaching, 6)
     whole = teaching.demonstration
@@ -124,7 +124,7 @@ def test_going_back_in_the_present_game_undoes_and_can_be_done_again(workspace: 
     assert isinstance(teaching.apply(Again(whole.id, 6))[0], Refused)
 
 
-def test_a_game_shown_again_from_a_step_gives_way_when_the_new_one_is_complete(
+def test_a_complete_new_version_replaces_the_old_game(
     workspace: Workspace,
 ) -> None:
     first = begun(workspace)
@@ -143,7 +143,7 @@ def test_a_game_shown_again_from_a_step_gives_way_when_the_new_one_is_complete(
     assert read_library(workspace.store, "bingo").finished == [old]
 
 
-def test_steps_of_the_old_game_can_be_undone_in_the_new_one(workspace: Workspace) -> None:
+def test_copied_steps_can_be_undone_in_the_new_version(workspace: Workspace) -> None:
     first = begun(workspace)
     steps(first, 5)
     again = begun(workspace, "Bea", Again("1", 3))
@@ -158,15 +158,13 @@ def test_steps_of_the_old_game_can_be_undone_in_the_new_one(workspace: Workspace
 
 
 @pytest.mark.parametrize("again", [Again("7", 1), Again("1", 99), Again("1", -1)])
-def test_what_cannot_be_shown_again_is_refused_in_a_sentence(
-    again: Again, workspace: Workspace
-) -> None:
+def test_an_invalid_request_to_show_again_is_refused(again: Again, workspace: Workspace) -> None:
     steps(begun(workspace), 2)
     with pytest.raises(TangyError, match=r"demonstration|step"):
         begun(workspace, "Bea", again)
 
 
-def test_an_undo_of_several_steps_that_cannot_be_kept_has_not_happened(
+def test_a_failed_undo_of_several_steps_changes_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     workspace = Workspace(tmp_path / "data")
@@ -237,7 +235,7 @@ def test_one_guided_game_teaches_the_whole_policy(users: int, tmp_path: Path) ->
         assert all(policy.decide(s).sure for s in workspace.activity.situations)
 
 
-def test_a_guided_game_is_undone_resumed_and_done_again_like_any_other(tmp_path: Path) -> None:
+def test_a_guided_game_supports_undo_resume_and_redo(tmp_path: Path) -> None:
     with opened(tmp_path / "data") as workspace:
         teaching = workspace.teaching("Ada", 5, guided=True)
         teaching.begin()
@@ -253,7 +251,7 @@ def test_a_guided_game_is_undone_resumed_and_done_again_like_any_other(tmp_path:
         assert resumed.demonstration == whole
 
 
-def test_a_guided_game_is_begun_beside_one_that_is_not_and_taken_up_before_it(
+def test_a_guided_game_is_resumed_before_an_unguided_one(
     workspace: Workspace,
 ) -> None:
     steps(begun(workspace), 2)
@@ -264,7 +262,7 @@ def test_a_guided_game_is_begun_beside_one_that_is_not_and_taken_up_before_it(
     assert begun(workspace).demonstration == guided.demonstration
 
 
-def test_what_gave_way_is_not_shown_again_beside_what_took_its_place(workspace: Workspace) -> None:
+def test_a_replaced_game_cannot_be_shown_again(workspace: Workspace) -> None:
     first = begun(workspace)
     list(ScriptedTeacher(first).demonstrate())
     list(ScriptedTeacher(begun(workspace, "Bea", Again("1", 10))).demonstrate())
@@ -273,7 +271,7 @@ def test_what_gave_way_is_not_shown_again_beside_what_took_its_place(workspace: 
     begun(workspace, "Cleo", Again("2", 5))
 
 
-def test_a_game_shown_again_whose_first_undo_fails_is_kept_all_the_same(
+def test_a_new_version_survives_a_failed_first_undo(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     workspace = Workspace(tmp_path / "data")

@@ -1,4 +1,4 @@
-"""Yes and no are understood as people say them, and nothing else is taken for a yes."""
+"""Yes and no in the words of people; nothing else is read as a yes."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ CHOICES = ("tell a joke", "greet everyone", "say goodbye")
 
 
 @pytest.mark.parametrize("text", YES)
-def test_what_is_listened_for_as_a_yes_is_one(text: str) -> None:
+def test_every_yes_phrase_is_a_yes(text: str) -> None:
     assert yes_or_no(text) is True
 
 
 @pytest.mark.parametrize("text", NO)
-def test_what_is_listened_for_as_a_no_is_one(text: str) -> None:
+def test_every_no_phrase_is_a_no(text: str) -> None:
     assert yes_or_no(text) is False
 
 
@@ -29,7 +29,7 @@ def test_a_yes_may_be_polite(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["no, that's right", "okay no", "oh no please don't", "not yet"])
-def test_what_has_a_no_in_it_is_no_yes(text: str) -> None:
+def test_a_sentence_with_a_no_is_a_no(text: str) -> None:
     assert yes_or_no(text) is False
 
 
@@ -45,11 +45,11 @@ def test_what_has_a_no_in_it_is_no_yes(text: str) -> None:
         "yesterday",
     ],
 )
-def test_what_is_neither_is_no_answer(text: str) -> None:
+def test_other_words_are_no_answer(text: str) -> None:
     assert yes_or_no(text) is None
 
 
-def test_other_talk_is_no_yes() -> None:
+def test_everyday_talk_is_no_yes() -> None:
     assert [text for text in (*NEAR, *FAR, *WORDINGS) if yes_or_no(text)] == ["yes of course"]
 
 
@@ -67,11 +67,11 @@ def test_other_talk_is_no_yes() -> None:
         ("", None),
     ],
 )
-def test_a_choice_is_named_by_its_number_or_its_words(text: str, number: int | None) -> None:
+def test_a_choice_is_selected_by_number_or_words(text: str, number: int | None) -> None:
     assert choice_in(text, CHOICES) == number
 
 
-def test_every_number_that_is_listened_for_is_a_choice() -> None:
+def test_every_choice_phrase_selects_a_choice() -> None:
     assert all(choice_in(text, CHOICES) for text in choice_phrases(len(CHOICES)))
     assert choice_in("the last one", ()) is None
 
@@ -99,11 +99,11 @@ def heard(words: str, phrase: str = "", margin: float = 0.0) -> AcousticEvidence
         (heard("stop"), StopCommand("stop")),
     ],
 )
-def test_an_answer_counts_where_the_sound_agrees(
+def test_an_answer_counts_if_the_sound_agrees(
     evidence: AcousticEvidence, reply: Reply | StopCommand | None
 ) -> None:
     assert answer(evidence, USUAL, CHOICES) == reply
 
 
-def test_the_mode_of_the_paper_hears_no_answers() -> None:
+def test_the_paper_mode_hears_no_answers() -> None:
     assert answer(heard("yes", "yes"), EvidenceSettings(mode="paper"), CHOICES) is None

@@ -1,4 +1,4 @@
-"""A microphone check chooses settings that part commands from the rest, and is shy of odd ones."""
+"""A microphone check chooses settings that separate commands from other speech."""
 
 from __future__ import annotations
 
@@ -67,33 +67,33 @@ def everywhere(graded: list[CalibrationScore]) -> dict[float, list[CalibrationSc
 
 
 class TestChoosing:
-    def test_nothing_changes_where_the_usual_settings_part_all(self) -> None:
+    def test_the_default_settings_stay_if_they_separate_everything(self) -> None:
         chosen = choose(everywhere(scores([3.5, 3.0, 2.5], [-6, -4, -3])))
         assert chosen.settings == USUAL
         assert chosen.figures == chosen.usual == SeparationCounts(3, 3, 0, 3, 0)
         assert chosen.figures.perfect
 
-    def test_a_shy_voice_is_met_half_way(self) -> None:
+    def test_a_quiet_voice_lowers_the_threshold(self) -> None:
         shy = [SURELY - short for short in (0.3, 0.4, 0.2, 0.5, 0.3, 0.4)]
         chosen = choose(everywhere(scores(shy, [-6, -6, -6])))
         assert chosen.usual == SeparationCounts(6, 0, 6, 3, 0)
         assert chosen.settings.shift < 0
         assert chosen.figures == SeparationCounts(6, 6, 0, 3, 0)
 
-    def test_other_speech_that_sounds_like_commands_makes_it_stricter(self) -> None:
+    def test_confusable_speech_raises_the_threshold(self) -> None:
         chosen = choose(everywhere(scores([4.0] * 6, [0.2, 0.0, -0.4])))
         assert chosen.usual.taken == 3
         assert chosen.settings.shift > 0
         assert chosen.figures.taken < 3
         assert chosen.figures.understood == 6
 
-    def test_the_weight_with_which_more_is_understood_is_taken(self) -> None:
+    def test_the_weight_that_understands_most_is_chosen(self) -> None:
         lost = [*scores([3.5] * 3, [-6] * 3), *[CalibrationScore(-6.0, COMMAND, False)] * 3]
         chosen = choose(everywhere(lost) | {0.1: scores([3.5] * 6, [-6] * 3)})
         assert chosen.settings.garbage == 0.1
         assert (chosen.usual.understood, chosen.figures.understood) == (3, 6)
 
-    def test_what_no_setting_parts_is_no_good(self) -> None:
+    def test_inseparable_scores_are_reported_as_not_separated(self) -> None:
         nothing = [CalibrationScore(-6.0, COMMAND, False)] * 6 + scores([], [-6.0] * 3)
         chosen = choose(everywhere(nothing))
         assert not chosen.figures.parted
@@ -105,7 +105,7 @@ class TestChoosing:
         st.lists(st.tuples(st.floats(-6, 6), st.booleans()), min_size=1, max_size=9),
         st.lists(st.floats(-6, 6), max_size=4),
     )
-    def test_settings_stay_within_bounds_and_never_understand_less_for_nothing(
+    def test_settings_stay_within_bounds_and_lose_no_command_without_gain(
         self, said: list[tuple[float, bool]], others: list[float]
     ) -> None:
         graded = [CalibrationScore(told, COMMAND, right) for told, right in said] + scores(
@@ -129,7 +129,7 @@ class TestStore:
         SeparationCounts(6, 4, 1, 3, 1),
     )
 
-    def test_settings_are_kept_for_each_microphone(self, store: Store) -> None:
+    def test_settings_are_stored_for_each_microphone(self, store: Store) -> None:
         keep(store, "arecord", self.CHOSEN)
         assert settings_for(store, "arecord") == EvidenceSettings("tiers", 0.9, -0.5)
         assert settings_for(store, "arecord", "paper") == EvidenceSettings("paper", 0.9, -0.5)
@@ -154,7 +154,7 @@ class TestStore:
         with pytest.raises(TangyError, match="tiers"):
             settings_for(store, None, "teirs")
 
-    def test_no_path_is_written_down(self, store: Store) -> None:
+    def test_no_path_is_stored(self, store: Store) -> None:
         for source in ("/home/rosa/voice.wav", "socket:/home/rosa/mic"):
             keep(store, source, self.CHOSEN)
             assert settings_for(store, source) == self.CHOSEN.settings
@@ -165,9 +165,7 @@ class TestStore:
         "written", [None, 3, {}, {"garbage": "x", "shift": 0}, {"garbage": 0.0, "shift": 0.0},
                     {"garbage": 0.4, "shift": 9}, {"garbage": float(10**9), "shift": 0}]
     )  # fmt: skip
-    def test_odd_settings_in_the_log_are_as_good_as_none(
-        self, written: object, store: Store
-    ) -> None:
+    def test_invalid_stored_settings_are_ignored(self, written: object, store: Store) -> None:
         append_body(store, "microphone checked", {"source": "arecord", "settings": written})
         assert settings_for(store, "arecord") == USUAL
 
@@ -206,7 +204,7 @@ class Hears:
 
 
 class Microphone(Source):
-    """A microphone that is quiet for 3 s, and then says the next thing whenever it is asked."""
+    """A microphone that is quiet for 3 s, and then gives the next phrase on request."""
 
     def __init__(self, said: list[int | None]) -> None:
         super().__init__("microphone", live=True)
@@ -239,7 +237,7 @@ class Silent(Source):
 
 
 class Muted(Microphone):
-    """A microphone that sends silence, and is switched on when somebody is told of it."""
+    """A microphone that sends silence until the check reports it."""
 
     def __init__(self, said: list[int | None], *, mended: bool) -> None:
         super().__init__(said)
@@ -285,7 +283,7 @@ def asked(activity: Activity, people: tuple[Person, ...]) -> list[CalibrationPro
 
 
 class TestChecking:
-    def test_what_is_said_spans_the_behaviours(
+    def test_the_phrases_of_the_check_span_the_behaviours(
         self, activity: Activity, lanterns: Activity, people: tuple[Person, ...]
     ) -> None:
         for one in (activity, lanterns):
@@ -303,7 +301,7 @@ class TestChecking:
                 assert command.behaviour == a.meant.behaviour
             assert not any(book.understand(a.text) for a in others)
 
-    async def test_a_recording_is_taken_in_order(
+    async def test_a_recording_is_checked_in_order(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         pcm = b"".join(bytes([number, 0]) for number in range(1, len(asked) + 1))
@@ -312,7 +310,7 @@ class TestChecking:
         assert checked.chosen.figures.perfect
         assert [words for _, words in checked.heard] == [a.text for a in asked]
 
-    async def test_a_live_one_is_asked_again_once(
+    async def test_a_missed_phrase_is_asked_for_once_more(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         microphone = Microphone([1, None, 2, *range(3, len(asked) + 1)])
@@ -323,7 +321,7 @@ class TestChecking:
         assert again == [CheckStep("say again", asked[1].text, 2)]
         assert told[0] == CheckStep("be quiet", number=3)
 
-    async def test_what_is_not_said_at_all_counts_as_not_understood(
+    async def test_a_missing_phrase_counts_as_not_understood(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         checked = await self.check(Recording("a.wav", b"\1\0\2\0"), activity, people, asked)
@@ -337,7 +335,7 @@ class TestChecking:
         with pytest.raises(SoundError, match="nobody was heard"):
             await self.check(Recording("a.wav", b""), activity, people, asked)
 
-    async def test_a_microphone_that_sends_nothing_is_given_up(
+    async def test_a_microphone_without_data_ends_the_check(
         self,
         activity: Activity,
         people: tuple[Person, ...],
@@ -348,7 +346,7 @@ class TestChecking:
         with pytest.raises(SoundError, match=r"nothing was heard for 0 s.* plugged in"):
             await self.check(Silent(), activity, people, asked, patience=0.0)
 
-    async def test_a_muted_microphone_is_waited_for_and_the_room_is_heard_again(
+    async def test_the_check_waits_for_a_muted_microphone(
         self,
         activity: Activity,
         people: tuple[Person, ...],
@@ -368,7 +366,7 @@ class TestChecking:
         with pytest.raises(SoundError, match="nothing was heard for 50 s, so nothing was changed"):
             await self.check(muted, activity, people, asked, patience=50.0)
 
-    async def test_a_recording_is_told_what_it_should_hold(
+    async def test_the_check_of_a_recording_lists_its_phrases(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         told: list[CheckNews] = []
@@ -390,13 +388,13 @@ class TestChecking:
             (SeparationCounts(6, 6, 0, 1, 1), "1 of 1 other sentences was taken for a command"),
         ],
     )
-    def test_why_nothing_is_stored_is_a_sentence(self, figures: SeparationCounts, why: str) -> None:
+    def test_an_unstored_result_gives_its_reason(self, figures: SeparationCounts, why: str) -> None:
         chosen = CalibrationResult(USUAL, figures, figures)
         checked = CheckResult(-60, -30, (), chosen, figures.parted and figures.others > 0, ())
         assert checked.parted is (not why)
         assert reason_words(checked) == (f"Nothing was stored: {why}." if why else "")
 
-    async def test_a_microphone_that_breaks_says_why(
+    async def test_a_failing_microphone_gives_its_reason(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         with pytest.raises(SoundError, match="unplugged"):
@@ -423,7 +421,7 @@ class TestChecking:
             return await MicrophoneCheck(source, book, hears, asked, tell, patience=patience).run()
 
 
-def test_reading_makes_no_data_folder(tmp_path: Path) -> None:
+def test_reading_settings_creates_no_data_folder(tmp_path: Path) -> None:
     with Store.open(tmp_path / "none", write=False) as empty:
         assert settings_for(empty, "arecord") == USUAL
     assert not (tmp_path / "none").exists()

@@ -1,4 +1,4 @@
-"""Commands: what may be said or typed for a behaviour, and what is made of anything else."""
+"""Commands: the phrases for a behaviour, and the handling of any other text."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class TestUnderstanding:
         assert meaning(NAMED, text) == ("navigate to user", user)
 
     @pytest.mark.parametrize("text", ["go to user 9", "go to user 12", "go to user 1 2", "go to 7"])
-    def test_nobody_is_gone_to_for_a_number_that_is_nobodys(self, text: str) -> None:
+    def test_an_unknown_number_names_no_person(self, text: str) -> None:
         assert BOOK.understand(text) is None
 
     @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ class TestUnderstanding:
             ("", None),
         ],
     )
-    def test_whom_nobody_is_called_is_told_from_what_is_not_understood(
+    def test_an_unknown_name_is_distinguished_from_unknown_words(
         self, text: str, stranger: str | None
     ) -> None:
         assert BOOK.stranger(text) == stranger
@@ -130,11 +130,11 @@ class TestUnderstanding:
             assert BOOK.understand(text) is None
 
     @pytest.mark.parametrize("text", ["go to seat you", "go to user to", "drive to player to you"])
-    def test_where_a_name_should_follow_nobody_is_gone_to(self, text: str) -> None:
+    def test_a_missing_name_names_no_person(self, text: str) -> None:
         assert BOOK.understand(text) is None
         assert any("go to" in near or "drive to" in near for near in BOOK.suggestions(text))
 
-    def test_strangers_are_known_in_the_words_of_any_activity(
+    def test_unknown_people_are_recognised_in_any_activity(
         self, lanterns: Activity, people: tuple[Person, ...]
     ) -> None:
         book = Phrasebook(lanterns, people)
@@ -155,13 +155,13 @@ class TestUnderstanding:
             ("drive all the way back to the front", "navigate to front"),
         ],
     )
-    def test_keywords_are_enough(self, text: str, behaviour: str) -> None:
+    def test_keywords_alone_are_understood(self, text: str, behaviour: str) -> None:
         command = BOOK.understand(text)
         assert command is not None
         assert command.behaviour == behaviour
         assert 0.5 < command.confidence < 1
 
-    def test_keywords_count_less_the_more_is_said_around_them(self) -> None:
+    def test_keywords_count_less_in_longer_sentences(self) -> None:
         short = BOOK.understand("a good joke")
         long = BOOK.understand("on sunday my uncle heard a joke about seven fishermen and a seal")
         assert short is not None
@@ -180,9 +180,7 @@ class TestUnderstanding:
             ("good bye every one", "valediction"),
         ],
     )
-    def test_typing_slips_are_understood_but_not_for_certain(
-        self, slip: str, behaviour: str
-    ) -> None:
+    def test_typing_slips_are_understood_with_doubt(self, slip: str, behaviour: str) -> None:
         command = BOOK.understand(slip)
         assert command is not None
         assert command.behaviour == behaviour
@@ -195,7 +193,7 @@ class TestUnderstanding:
         command = BOOK.understand(text)
         assert command is None or command.confidence < KEYWORDS_AT_LEAST
 
-    def test_what_only_fillers_tell_apart_is_not_certain_without_them(
+    def test_phrases_that_differ_only_in_fillers_are_uncertain(
         self, activity: Activity, people: tuple[Person, ...]
     ) -> None:
         changed = {
@@ -232,10 +230,10 @@ class TestUnderstanding:
             "🙂🙂",
         ],
     )
-    def test_what_asks_for_nothing_is_not_understood(self, text: str) -> None:
+    def test_text_without_a_command_is_not_understood(self, text: str) -> None:
         assert BOOK.understand(text) is None
 
-    def test_heard_is_the_text_as_it_was_given_but_showable(self) -> None:
+    def test_the_heard_text_is_printable(self) -> None:
         command = BOOK.understand("  Call\x07 a \u202eNumber \n please ")
         assert command is not None
         assert command.heard == "Call a Number please"
@@ -261,7 +259,7 @@ class TestUnderstanding:
             assert {BOOK.phrases[phrase] for phrase in meant} == {command.behaviour}
 
     @given(st.sampled_from(sorted(BOOK.phrases)), st.data())
-    def test_a_slip_in_a_long_word_keeps_the_meaning_or_the_doubt(
+    def test_a_swapped_letter_never_gives_a_certain_wrong_command(
         self, phrase: str, data: st.DataObject
     ) -> None:
         place = data.draw(st.integers(0, len(phrase) - 2))
@@ -271,7 +269,7 @@ class TestUnderstanding:
             assert command.behaviour == BOOK.phrases[phrase]
 
     @pytest.mark.slow
-    def test_a_long_text_takes_no_time(self) -> None:
+    def test_a_long_text_is_bounded_in_time(self) -> None:
         def seconds(words: int) -> float:
             begun = process_time()
             BOOK.understand("zelebrate " * words)
@@ -283,30 +281,30 @@ class TestUnderstanding:
 
 
 class TestPeople:
-    def test_numbers_are_those_of_the_ids(self, activity: Activity) -> None:
+    def test_numbers_of_people_come_from_their_ids(self, activity: Activity) -> None:
         book = Phrasebook(activity, [Person("user7", "Ada"), Person("user3", "Bob")])
         assert meaning(book, "go to user 3") == ("navigate to user", "user3")
         assert meaning(book, "go to user seven") == ("navigate to user", "user7")
         assert book.understand("go to user 1") is None
 
-    def test_ids_without_numbers_are_counted(self, activity: Activity) -> None:
+    def test_people_without_numbered_ids_are_counted(self, activity: Activity) -> None:
         book = Phrasebook(activity, [Person("ada", "Ada"), Person("bob", "Bob")])
         assert meaning(book, "go to user 2") == ("navigate to user", "bob")
 
-    def test_a_name_that_two_share_names_neither(self, activity: Activity) -> None:
+    def test_a_shared_name_names_neither_person(self, activity: Activity) -> None:
         book = Phrasebook(activity, [Person("user1", "Rosa"), Person("user2", "ROSA")])
         assert "go to rosa" not in book.phrases
         assert meaning(book, "go to user 2") == ("navigate to user", "user2")
 
     @pytest.mark.parametrize("name", ["The", "Tangy", "🙂", "...", "front", "2", "a b c d"])
-    def test_odd_names_do_not_take_a_phrase_away(self, activity: Activity, name: str) -> None:
+    def test_odd_names_hide_no_phrase(self, activity: Activity, name: str) -> None:
         book = Phrasebook(activity, [Person("user1", name), Person("user2", "Bob")])
         assert meaning(book, "go to the front") == ("navigate to front", None)
         assert meaning(book, "go to user") == ("navigate to user", None)
         assert meaning(book, "go to user 2") == ("navigate to user", "user2")
 
     @given(st.lists(st.text(max_size=20), min_size=1, max_size=8))
-    def test_any_names_leave_the_phrases_of_the_activity_as_they_are(
+    def test_names_of_people_change_no_phrase_of_the_activity(
         self, activity: Activity, names: list[str]
     ) -> None:
         book = Phrasebook(activity, [Person(f"user{n}", name) for n, name in enumerate(names, 1)])
@@ -325,7 +323,7 @@ class TestPeople:
         assert meaning(book, "walk to guest three") == ("walk over", "user3")
         assert book.understand("call a number") is None
 
-    def test_a_behaviour_without_phrases_is_asked_for_by_name(
+    def test_a_behaviour_without_phrases_is_called_by_its_name(
         self, activity: Activity, people: tuple[Person, ...]
     ) -> None:
         joke = replace(activity.behaviours["joke"], phrases=(), keywords=())
@@ -351,7 +349,7 @@ class TestCompleting:
         assert len(set(found)) == len(found)
         assert set(found) <= set(BOOK.phrases)
 
-    def test_nothing_completes_what_no_phrase_begins_with(self) -> None:
+    def test_an_unknown_beginning_has_no_completion(self) -> None:
         assert BOOK.complete("xyz") == ()
 
 
@@ -373,7 +371,7 @@ class TestSpoken:
             assert not any(c.isdigit() for c in phrase)
             assert phrase == " ".join(phrase.split()).casefold()
 
-    def test_people_are_spoken_of_by_number_and_name(self) -> None:
+    def test_spoken_phrases_name_people_by_number_and_name(self) -> None:
         assert "go to user two" in BOOK.spoken()
         assert {"go to rosa", "go to jose luis", "go to user three"} <= set(NAMED.spoken())
         assert not {"go to the rosa", "go to the user two"} & set(NAMED.spoken())

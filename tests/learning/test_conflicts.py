@@ -1,4 +1,4 @@
-"""Conflicts are all found, across demonstrations and teachers, and settled by one answer."""
+"""Conflicts are all found, across demonstrations and teachers, and resolved by one answer."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def rows_of(shown: list[Demonstration]) -> list[tuple[Situation, str]]:
 
 @pytest.mark.parametrize("rarest", [False, True])
 @pytest.mark.parametrize("seed", range(5))
-def test_three_in_a_hundred_wrong_answers_are_all_found_and_once_resolved_the_policy_is_exact(
+def test_every_wrong_answer_of_three_percent_is_found_and_resolved(
     seed: int, rarest: bool, demonstrate: Demonstrate
 ) -> None:
     clean = numbered([demonstrate("bingo", 100 * seed + game, 4) for game in range(5)])
@@ -101,7 +101,7 @@ def test_three_in_a_hundred_wrong_answers_are_all_found_and_once_resolved_the_po
         assert decision.sure
 
 
-def test_teachers_who_differ_are_told_apart(activity: Activity) -> None:
+def test_a_conflict_names_the_teachers_of_each_answer(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     ada = showing((where, "move card closer"), (where, "move card closer"))
     bea = showing((where, "encourage"), teacher="Bea", id="other", first=3)
@@ -111,7 +111,7 @@ def test_teachers_who_differ_are_told_apart(activity: Activity) -> None:
     assert told == {"move card closer": [("Ada", 1), ("Ada", 2)], "encourage": [("Bea", 1)]}
 
 
-def test_the_same_wrong_answer_given_again_later_is_a_conflict_again(activity: Activity) -> None:
+def test_a_repeated_wrong_answer_reopens_the_conflict(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     early = showing((where, "move card closer"), (where, "encourage"))
     said = find_conflicts([early])[0].resolved("move card closer")
@@ -140,7 +140,7 @@ def test_mistakes_settled_at_different_times_stay_settled(activity: Activity) ->
     assert (decision.behaviour, decision.sure) == ("move card closer", True)
 
 
-def test_what_was_said_of_a_situation_that_nobody_shows_any_more_is_not_learnt(
+def test_a_resolution_without_demonstrations_is_not_learnt(
     activity: Activity,
 ) -> None:
     where = Situation("help", "AR", "occluded")
@@ -152,7 +152,7 @@ def test_what_was_said_of_a_situation_that_nobody_shows_any_more_is_not_learnt(
         learn_policy(activity, [], resolutions=[said], settings=FEW)
 
 
-def test_both_may_be_right_but_not_a_third(activity: Activity) -> None:
+def test_a_resolution_may_allow_two_answers(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     shown = showing((where, "move card closer"), (where, "encourage"))
     both = find_conflicts([shown])[0].resolved("move card closer", "encourage")
@@ -163,7 +163,7 @@ def test_both_may_be_right_but_not_a_third(activity: Activity) -> None:
     assert len(find_conflicts([shown, third], [both])) == 1
 
 
-def test_an_answer_that_nobody_showed_can_be_the_right_one(activity: Activity) -> None:
+def test_a_resolution_may_name_an_undemonstrated_answer(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     shown = showing((where, "joke"), (where, "encourage"))
     said = find_conflicts([shown])[0].resolved("move card closer")
@@ -172,7 +172,7 @@ def test_an_answer_that_nobody_showed_can_be_the_right_one(activity: Activity) -
     assert (decision.behaviour, decision.sure, decision.seen) == ("move card closer", True, 0)
 
 
-def test_copies_of_a_step_are_one_step(activity: Activity) -> None:
+def test_copies_of_a_step_count_once(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     one = showing((where, "encourage"))
     copy = replace(one, id="copy")
@@ -180,7 +180,7 @@ def test_copies_of_a_step_are_one_step(activity: Activity) -> None:
     assert [s.demonstration for s in shown_steps([one, copy])] == ["made"]
 
 
-def test_what_follows_a_wrong_or_failed_step_is_not_expected(demonstrate: Demonstrate) -> None:
+def test_effects_of_wrong_or_failed_steps_are_not_learnt(demonstrate: Demonstrate) -> None:
     (shown,) = numbered([demonstrate("bingo", 1, 4)])
     first = shown.steps[0]
     stray = replace(first, behaviour="call number", id=10_000)
@@ -198,7 +198,7 @@ BEHAVIOURS = st.sampled_from(sorted(BINGO.behaviours))
 
 
 @given(st.lists(st.tuples(SITUATIONS, BEHAVIOURS), min_size=1, max_size=30), st.data())
-def test_after_every_conflict_is_settled_there_is_none_and_nothing_else_is_lost(
+def test_resolving_every_conflict_keeps_all_other_rows(
     rows: list[tuple[Situation, str]], data: st.DataObject
 ) -> None:
     shown = showing(*rows)

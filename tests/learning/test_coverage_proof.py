@@ -1,4 +1,4 @@
-"""The proof of coverage says for which groups it holds, and where its search was cut."""
+"""The proof of coverage names the groups that it covers, and the searches that were cut."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tangy_tui.text.activity_search import proof_words
 from tests.support.declared import declared
 
 
-def test_it_names_the_sizes_of_the_group_that_it_holds_for() -> None:
+def test_the_proof_names_the_group_sizes_that_it_covers() -> None:
     activity = declared("trivia")
     found = search_groups(activity, expected_moves(activity))
     assert (found.proved, found.whole, found.open) == ((1, 2, 3), True, {})
@@ -17,7 +17,7 @@ def test_it_names_the_sizes_of_the_group_that_it_holds_for() -> None:
     assert search_groups(teams, expected_moves(teams)).proved == (len(teams.teams),)
 
 
-def test_a_group_whose_search_was_cut_is_not_proved() -> None:
+def test_an_incomplete_search_proves_nothing() -> None:
     activity = declared("trivia")
     small = Limit(states=100, seconds=10.0)
     found = search_groups(activity, expected_moves(activity), largest=small)
@@ -28,7 +28,7 @@ def test_a_group_whose_search_was_cut_is_not_proved() -> None:
     assert (cut.whole, cut.proved) == (False, ())
 
 
-def test_words_claim_no_more_than_was_searched() -> None:
+def test_the_words_claim_only_the_searched_groups() -> None:
     activity = declared("trivia")
     shown = expected_moves(activity)
     three = " ".join(proof_words(activity, search_groups(activity, shown)))
@@ -39,7 +39,7 @@ def test_words_claim_no_more_than_was_searched() -> None:
     assert "could not search all games of 1 player" in none
 
 
-def test_a_situation_that_was_not_shown_stays_open_in_every_size() -> None:
+def test_an_undemonstrated_situation_stays_open_in_every_group_size() -> None:
     activity = declared("trivia")
     shown = expected_moves(activity)
     left_out = next(one for one in shown.shown if one.stage == "over")

@@ -1,4 +1,4 @@
-"""Editing the library: every change is whole, is undone and done again, and loses nothing."""
+"""Editing the library: every change is atomic, can be undone and redone, and loses nothing."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def used(library: Library) -> dict[str, list[int]]:
     return {d.id: [step.id for step in d.steps] for d in library.finished}
 
 
-def test_what_is_deleted_is_not_learnt_from_until_it_is_restored(editor: Editor) -> None:
+def test_a_deleted_demonstration_is_unused_until_it_is_restored(editor: Editor) -> None:
     before = used(editor.library)
     editor.delete("2")
     assert set(used(editor.library)) == {"aaa", "ccc"}
@@ -106,7 +106,7 @@ def test_splitting_keeps_every_step_in_order_and_once(editor: Editor) -> None:
     }
 
 
-def test_a_conflict_is_settled_and_opened_again_by_undo(editor: Editor) -> None:
+def test_undo_reopens_a_resolved_conflict(editor: Editor) -> None:
     (conflict,) = editor.library.conflicts
     assert list(conflict.answers) == ["greeting", "joke"]
     editor.resolve(conflict, "greeting")
@@ -117,7 +117,7 @@ def test_a_conflict_is_settled_and_opened_again_by_undo(editor: Editor) -> None:
     assert editor.library.conflicts == []
 
 
-def test_edits_are_undone_the_latest_first(editor: Editor) -> None:
+def test_undo_starts_with_the_latest_edit(editor: Editor) -> None:
     before = used(editor.library)
     editor.merge("1", "2")
     editor.delete("new1")
@@ -129,7 +129,7 @@ def test_edits_are_undone_the_latest_first(editor: Editor) -> None:
         editor.undo()
 
 
-def test_a_new_edit_ends_what_could_be_done_again(editor: Editor) -> None:
+def test_a_new_edit_clears_redo(editor: Editor) -> None:
     editor.delete("1")
     editor.undo()
     editor.delete("2")
@@ -152,7 +152,7 @@ def test_a_new_edit_ends_what_could_be_done_again(editor: Editor) -> None:
         (lambda e: e.resolve(e.library.conflicts[0], "greting"), "did you mean 'greeting'"),
     ],
 )
-def test_what_cannot_be_done_is_said_in_a_sentence_and_changes_nothing(
+def test_an_impossible_edit_is_refused_and_changes_nothing(
     change: Callable[[Editor], object], reason: str, editor: Editor, store: Store
 ) -> None:
     events = sum(1 for _ in store.events())
@@ -161,7 +161,7 @@ def test_what_cannot_be_done_is_said_in_a_sentence_and_changes_nothing(
     assert sum(1 for _ in store.events()) == events
 
 
-def test_what_gave_way_comes_back_by_undo_only(editor: Editor) -> None:
+def test_a_merged_demonstration_returns_only_by_undo(editor: Editor) -> None:
     editor.merge("1", "2")
     for wanted in ("1", "2"):
         with pytest.raises(NotPossible, match="was merged: undo"):
@@ -170,7 +170,7 @@ def test_what_gave_way_comes_back_by_undo_only(editor: Editor) -> None:
             editor.delete(wanted)
 
 
-def test_what_was_made_of_a_demonstration_does_not_change_with_it(
+def test_parts_of_a_split_demonstration_ignore_its_later_changes(
     editor: Editor, store: Store
 ) -> None:
     steps = used(editor.library)
@@ -180,7 +180,7 @@ def test_what_was_made_of_a_demonstration_does_not_change_with_it(
     assert (now["new1"], now["new2"]) == (steps["aaa"][:2], steps["aaa"][2:])
 
 
-def test_merged_steps_keep_who_showed_them(editor: Editor, store: Store) -> None:
+def test_merged_steps_keep_their_teachers(editor: Editor, store: Store) -> None:
     logged(store, "ddd", ["joke"], teacher="Bea")
     editor.merge("aaa", "ddd")
     made = editor.library.entries["new1"].demonstration
@@ -189,7 +189,7 @@ def test_merged_steps_keep_who_showed_them(editor: Editor, store: Store) -> None
     assert told == ["Ada", "Ada", "Ada", "Bea"]
 
 
-def test_only_one_of_two_that_show_the_same_game_is_restored(editor: Editor, store: Store) -> None:
+def test_only_one_of_two_versions_of_a_game_is_restored(editor: Editor, store: Store) -> None:
     editor.delete("aaa")
     body = {"activity": "bingo", "teacher": "Bea", "seed": 1, "people": ["a"]}
     again = {"demonstration": "bbb2", "origin": "again", "of": ["aaa"], "kept": 1, **body}
@@ -199,7 +199,7 @@ def test_only_one_of_two_that_show_the_same_game_is_restored(editor: Editor, sto
         editor.restore("aaa")
 
 
-def test_what_was_taken_back_is_made_again_by_redo(editor: Editor) -> None:
+def test_an_undone_merge_returns_only_by_redo(editor: Editor) -> None:
     editor.merge("1", "2")
     editor.undo()
     with pytest.raises(NotPossible, match="demonstrations redo"):
@@ -212,7 +212,7 @@ def test_an_unfinished_demonstration_is_not_merged(editor: Editor, store: Store)
         editor.merge("1", "ddd")
 
 
-def test_names_are_numbers_ids_or_their_beginnings(editor: Editor) -> None:
+def test_demonstrations_are_found_by_number_id_or_prefix(editor: Editor) -> None:
     library = editor.library
     assert library.find("1") == library.find("aaa") == library.entries["aaa"]
     assert library.number("ccc") == 3
@@ -227,7 +227,7 @@ def test_each_activity_has_its_own_edits(store: Store, lanterns: Activity, edito
         other.undo()
 
 
-def test_what_is_shown_again_replaces_the_old_when_it_is_complete(store: Store) -> None:
+def test_a_complete_new_version_replaces_the_old_demonstration(store: Store) -> None:
     logged(store, "aaa", ["greeting", "joke", "encourage"])
     again = {
         "demonstration": "bbb",
@@ -314,7 +314,7 @@ def editor_of_three(store: Store) -> Editor:
 @pytest.mark.slow
 @given(CHANGES)
 @tried(60)
-def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(
+def test_undo_and_redo_reverse_any_series_of_edits(
     changes: list[tuple[str, int, int]],
 ) -> None:
     with empty_store() as store:
@@ -341,7 +341,7 @@ def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(
 @pytest.mark.slow
 @given(CHANGES)
 @tried(60)
-def test_no_step_is_learnt_from_twice_whatever_is_done(
+def test_no_series_of_edits_uses_a_step_twice(
     changes: list[tuple[str, int, int]],
 ) -> None:
     with empty_store() as store:
@@ -353,16 +353,14 @@ def test_no_step_is_learnt_from_twice_whatever_is_done(
             assert all(entry.demonstration.steps for entry in editor.library.entries.values())
 
 
-def test_a_change_is_one_event_and_so_there_whole_or_not_at_all(
-    editor: Editor, store: Store
-) -> None:
+def test_each_edit_is_one_event(editor: Editor, store: Store) -> None:
     for what in ("delete", "merge", "split", "resolve", "undo", "redo"):
         events = sum(1 for _ in store.events())
         assert change(editor, what, 1, 2 if what == "merge" else 1) or what in ("merge", "split")
         assert sum(1 for _ in store.events()) <= events + 1
 
 
-def test_demonstrations_of_before_there_were_edits_read_as_they_were(store: Store) -> None:
+def test_demonstrations_from_before_editing_are_read(store: Store) -> None:
     logged(store, "aaa", ["greeting"])
     (entry,) = read_library(store, "bingo").entries.values()
     old = entry.demonstration

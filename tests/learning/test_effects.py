@@ -1,4 +1,4 @@
-"""Effects: hardly a false alarm in games as they should be, and every planted fault is caught."""
+"""Effects: few false alarms in correct games, and every planted fault is caught."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def effects(activity: Activity, demonstrate: Demonstrate) -> Effects:
 
 
 @pytest.mark.slow
-def test_three_demonstrations_are_enough_for_one_false_alarm_in_a_hundred_games(
+def test_three_demonstrations_give_at_most_one_false_alarm_in_a_hundred_games(
     activity: Activity, demonstrate: Demonstrate, games: list[Seen]
 ) -> None:
     alarms = sets = 0
@@ -63,7 +63,7 @@ def test_three_demonstrations_are_enough_for_one_false_alarm_in_a_hundred_games(
     assert alarms / (sets * GAMES) <= 0.01
 
 
-def test_what_was_demonstrated_is_expected(
+def test_demonstrated_effects_are_expected(
     activity: Activity, demonstrate: Demonstrate, effects: Effects
 ) -> None:
     for number in range(3):
@@ -71,9 +71,7 @@ def test_what_was_demonstrated_is_expected(
             assert not effects.mismatches(step.behaviour, step.state, step.after, activity)
 
 
-def test_whatever_follows_a_behaviour_has_words_of_its_own(
-    activity: Activity, games: list[Seen]
-) -> None:
+def test_every_effect_has_its_own_words(activity: Activity, games: list[Seen]) -> None:
     followed = {
         value for before, _, after in games for value in transition(before, after, activity).items()
     }
@@ -83,14 +81,14 @@ def test_whatever_follows_a_behaviour_has_words_of_its_own(
 
 
 @pytest.mark.parametrize("users", [1, 2, 8])
-def test_effects_learnt_with_four_people_hold_for_other_numbers(
+def test_effects_learnt_with_four_people_hold_for_other_group_sizes(
     users: int, activity: Activity, effects: Effects
 ) -> None:
     seen = watch(activity, 11, users)
     assert sum(len(effects.mismatches(b, s, a, activity)) for s, b, a in seen) <= GAMES * 0.01
 
 
-def test_a_made_up_activity_has_effects_too(
+def test_effects_are_learnt_for_a_made_up_activity(
     lanterns: Activity, cover: Callable[[str, int, int], tuple[Demonstration, ...]]
 ) -> None:
     shown = [*cover("lanterns", 1, 4), *cover("lanterns", 2, 4)]
@@ -152,7 +150,7 @@ def the_end(_: ActivityState, after: ActivityState) -> ActivityState:
         ("encourage", one_request_fewer, "others' requests"),
     ],
 )
-def test_a_planted_fault_is_caught_every_time(
+def test_every_planted_fault_is_caught(
     behaviour: str,
     plant: Plant,
     variable: str,
@@ -172,7 +170,7 @@ def test_a_planted_fault_is_caught_every_time(
     assert planted >= 3
 
 
-def test_a_request_that_was_closed_and_made_again_at_once_is_no_fault(
+def test_a_request_repeated_at_once_is_no_fault(
     activity: Activity, effects: Effects, games: list[Seen]
 ) -> None:
     closed = [(b, a) for b, name, a in games if name == "encourage"]
@@ -183,7 +181,7 @@ def test_a_request_that_was_closed_and_made_again_at_once_is_no_fault(
         assert not effects.mismatches("encourage", before, after._replace(users=again), activity)
 
 
-def test_a_behaviour_that_was_never_shown_is_reported_with_nothing_expected(
+def test_an_undemonstrated_behaviour_has_no_expected_effect(
     activity: Activity, games: list[Seen]
 ) -> None:
     before, name, after = games[0]
@@ -198,7 +196,7 @@ def test_a_mismatch_is_said_in_words() -> None:
     assert str(mismatch) == "navigate to user: robot's place should be a or b, is front"
 
 
-def test_nothing_about_a_person_is_looked_at_where_nobody_asked(
+def test_effects_on_a_person_are_checked_only_if_somebody_asked(
     activity: Activity, games: list[Seen]
 ) -> None:
     for before, _, after in games:

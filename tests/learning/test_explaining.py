@@ -1,4 +1,4 @@
-"""Why a decision is taken, what was not shown yet, and where two policies differ."""
+"""The reasons for a decision, missing situations, and differences between two policies."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def without(shown: Demonstration, situation: Situation) -> Demonstration:
 # ---------------------------------------------------------------------------------------- why
 
 
-def test_a_decision_rests_on_exactly_the_steps_shown_in_its_situation(
+def test_an_explanation_lists_exactly_the_steps_of_its_situation(
     shown: list[Demonstration], activity: Activity
 ) -> None:
     policy = learn_policy(activity, shown, settings=FEW)
@@ -83,7 +83,7 @@ def test_a_decision_rests_on_exactly_the_steps_shown_in_its_situation(
         assert bool(why.near) == (not there)
 
 
-def test_only_what_the_policy_was_learnt_from_counts(
+def test_an_explanation_uses_only_the_training_demonstrations(
     shown: list[Demonstration], activity: Activity
 ) -> None:
     policy = learn_policy(activity, shown[:1], settings=FEW)
@@ -91,7 +91,7 @@ def test_only_what_the_policy_was_learnt_from_counts(
     assert {s.demonstration for s in why.steps} == {shown[0].id}
 
 
-def test_what_was_never_shown_is_said_and_where_the_trees_guess_from(
+def test_an_undemonstrated_situation_lists_the_nearest_steps(
     shown: list[Demonstration], activity: Activity
 ) -> None:
     poorer = [without(d, WRONG) for d in shown]
@@ -108,7 +108,7 @@ def test_what_was_never_shown_is_said_and_where_the_trees_guess_from(
     assert f"{done} {why.decision.share:.0%}" in words
 
 
-def test_a_conflict_and_its_settlement_are_told(
+def test_an_explanation_includes_a_conflict_and_its_resolution(
     shown: list[Demonstration], activity: Activity
 ) -> None:
     first = shown[0].steps[0]
@@ -128,7 +128,7 @@ def test_a_conflict_and_its_settlement_are_told(
     )
 
 
-def test_what_tangy_would_do_by_now_counts_the_present_demonstration(
+def test_a_preview_includes_the_current_demonstration(
     store: Store, shown: list[Demonstration], activity: Activity
 ) -> None:
     with pytest.raises(NothingToLearnFrom):
@@ -157,7 +157,7 @@ def test_coverage_counts_the_steps_of_each_situation(
     assert "nobody has had a wrong mark yet" in missing_words(activity, found)
 
 
-def test_an_activity_without_such_words_is_told_of_in_its_own(lanterns: Activity) -> None:
+def test_an_activity_without_own_words_is_described_by_its_values(lanterns: Activity) -> None:
     found = coverage(lanterns, [])
     for situation, words in zip(found.missing, missing_words(lanterns, found), strict=True):
         assert lanterns.in_words(situation) in words
@@ -190,7 +190,7 @@ def two_teachers(store: Store, shown: list[Demonstration], activity: Activity) -
     return store
 
 
-def test_teacher_against_teacher_row_by_row(two_teachers: Store, activity: Activity) -> None:
+def test_two_teachers_are_compared_row_by_row(two_teachers: Store, activity: Activity) -> None:
     ada, _ = find_policy(two_teachers, activity, "Ada")
     bea, _ = find_policy(two_teachers, activity, "teacher:Bea")
     rows = compare(activity, ada, bea)
@@ -201,7 +201,7 @@ def test_teacher_against_teacher_row_by_row(two_teachers: Store, activity: Activ
     assert all(row.same for row in compare(activity, ada, ada))
 
 
-def test_before_against_after(two_teachers: Store, activity: Activity) -> None:
+def test_two_versions_of_a_policy_are_compared(two_teachers: Store, activity: Activity) -> None:
     before, _ = find_policy(two_teachers, activity, "last~1")
     after, _ = find_policy(two_teachers, activity, "last")
     assert (before.name, after.name) == ("early", "late")
@@ -217,14 +217,14 @@ def test_a_policy_is_found_by_name_and_digest(two_teachers: Store, activity: Act
 
 
 @pytest.mark.parametrize("wanted", ["Cleo", "last~7", "policy:Ada", "teacher:late", "", "la"])
-def test_what_cannot_be_found_is_said_with_what_there_is(
+def test_an_unknown_policy_is_refused_with_suggestions(
     wanted: str, two_teachers: Store, activity: Activity
 ) -> None:
     with pytest.raises(TangyError, match=r"did you mean|choose one of|were learnt"):
         find_policy(two_teachers, activity, wanted)
 
 
-def test_a_house_opens_all_of_it_by_name(taught: Path) -> None:
+def test_a_data_folder_opens_every_policy_by_name(taught: Path) -> None:
     workspace = Workspace(taught, write=False)
     try:
         store, activity = workspace.store, workspace.activity

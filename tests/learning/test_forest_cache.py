@@ -1,4 +1,4 @@
-"""What forests answered is kept, never believed, and never in the way."""
+"""The cache of forests: verified on reading, and optional."""
 
 from __future__ import annotations
 
@@ -38,7 +38,9 @@ def kept(folder: Path) -> list[Path]:
     return sorted((folder / FOLDER).glob("*"))
 
 
-def test_what_is_kept_is_what_was_grown(activity: Activity, rows: Rows, tmp_path: Path) -> None:
+def test_a_cached_forest_equals_the_grown_one(
+    activity: Activity, rows: Rows, tmp_path: Path
+) -> None:
     situations = tuple(all_situations(activity))
     cache = ForestCache(tmp_path)
     first = cache.grown(EXACT, rows, situations)
@@ -49,7 +51,7 @@ def test_what_is_kept_is_what_was_grown(activity: Activity, rows: Rows, tmp_path
     assert file.read_bytes() == before
 
 
-def test_other_settings_or_steps_are_another_forest(
+def test_settings_and_steps_identify_a_cached_forest(
     activity: Activity, rows: Rows, tmp_path: Path
 ) -> None:
     situations, cache = tuple(all_situations(activity)), ForestCache(tmp_path)
@@ -59,7 +61,7 @@ def test_other_settings_or_steps_are_another_forest(
 
 
 @pytest.mark.slow
-def test_what_was_tampered_with_is_found_out_and_put_right(taught: Path) -> None:
+def test_a_manipulated_cache_is_noticed_and_corrected(taught: Path) -> None:
     with Store.open(taught, write=True) as store:
         activity = load_activity("bingo")
         right, notices = load_policy(store, activity)
@@ -87,7 +89,7 @@ def test_what_was_tampered_with_is_found_out_and_put_right(taught: Path) -> None
         "NaN",
     ],
 )
-def test_a_file_that_holds_something_else_is_passed_over(
+def test_an_invalid_cache_file_is_ignored(
     text: str, activity: Activity, rows: Rows, tmp_path: Path
 ) -> None:
     situations, cache = tuple(all_situations(activity)), ForestCache(tmp_path)
@@ -98,7 +100,7 @@ def test_a_file_that_holds_something_else_is_passed_over(
     assert json.loads(file.read_text())["votes"]
 
 
-def test_where_nothing_can_be_kept_it_is_learnt_each_time(
+def test_the_forest_is_grown_again_if_the_cache_cannot_be_written(
     activity: Activity, rows: Rows, tmp_path: Path
 ) -> None:
     (tmp_path / FOLDER).write_text("a file in the way")
@@ -107,7 +109,7 @@ def test_where_nothing_can_be_kept_it_is_learnt_each_time(
     assert (tmp_path / FOLDER).read_text() == "a file in the way"
 
 
-def test_only_the_last_ones_are_kept(activity: Activity, rows: Rows, tmp_path: Path) -> None:
+def test_only_the_newest_files_are_kept(activity: Activity, rows: Rows, tmp_path: Path) -> None:
     situations, cache = tuple(all_situations(activity)), ForestCache(tmp_path)
     (tmp_path / FOLDER).mkdir()
     for old in range(MOST + 5):
@@ -117,7 +119,7 @@ def test_only_the_last_ones_are_kept(activity: Activity, rows: Rows, tmp_path: P
 
 
 @pytest.mark.slow
-def test_to_look_at_a_policy_loads_no_forest(taught: Path) -> None:
+def test_showing_a_policy_loads_no_forest(taught: Path) -> None:
     look = (
         "import sys; from tangy_tui.cli import main\n"
         f"sys.argv = ['tangy', 'policy', '--json', '--data', {str(taught)!r}]\n"
@@ -135,7 +137,7 @@ def test_to_look_at_a_policy_loads_no_forest(taught: Path) -> None:
 
 
 @pytest.mark.parametrize("share", ["NaN", "Infinity", "-1.0", "0.25"])
-def test_votes_that_cannot_be_are_grown_anew(
+def test_a_cache_with_impossible_votes_is_grown_again(
     share: str, activity: Activity, rows: Rows, tmp_path: Path
 ) -> None:
     situations, cache = tuple(all_situations(activity)), ForestCache(tmp_path)

@@ -1,4 +1,4 @@
-"""Demonstrations and policies are what the log says, and a policy that differs says so."""
+"""Demonstrations and policies are read from the log, and differences of a policy are reported."""
 
 from __future__ import annotations
 
@@ -68,16 +68,14 @@ def with_kept(store: Store, change: Mapping[str, Any]) -> None:
 # ------------------------------------------------------------------------------ demonstrations
 
 
-def test_demonstrations_come_back_as_they_were_given(
+def test_logged_demonstrations_are_read_back_unchanged(
     store: Store, shown: list[Demonstration]
 ) -> None:
     assert read_demonstrations(store, "bingo") == shown
     assert read_demonstrations(store, "lanterns") == []
 
 
-def test_demonstrations_that_interleave_are_kept_apart(
-    store: Store, demonstrate: Demonstrate
-) -> None:
+def test_interleaved_demonstrations_are_separated(store: Store, demonstrate: Demonstrate) -> None:
     one, other = demonstrate("bingo", 1, 4), demonstrate("bingo", 2, 4)
     log_demonstration(store, replace(one, steps=one.steps[:3], finished=False))
     log_demonstration(store, other)
@@ -111,7 +109,7 @@ def test_a_library_is_read_again_only_after_a_change(
     assert read_library(store, "lanterns").entries == {}
 
 
-def test_an_undone_step_is_gone_and_its_demonstration_no_longer_finished(
+def test_undoing_the_last_step_reopens_the_demonstration(
     store: Store, shown: list[Demonstration]
 ) -> None:
     append_body(
@@ -120,7 +118,7 @@ def test_an_undone_step_is_gone_and_its_demonstration_no_longer_finished(
     assert read_demonstrations(store, "bingo")[0] == shown[0].without_last()
 
 
-def test_steps_of_unknown_demonstrations_are_passed_over(
+def test_steps_of_unknown_demonstrations_are_ignored(
     store: Store, shown: list[Demonstration]
 ) -> None:
     for kind in (DemonstrationStep, DemonstrationStepUndone, DemonstrationFinished):
@@ -131,12 +129,14 @@ def test_steps_of_unknown_demonstrations_are_passed_over(
 # ------------------------------------------------------------------------------------- policies
 
 
-def test_without_a_policy_a_person_is_told_how_to_get_one(store: Store, activity: Activity) -> None:
+def test_a_missing_policy_is_reported_with_the_command_to_learn_one(
+    store: Store, activity: Activity
+) -> None:
     with pytest.raises(NoPolicy, match=r"not learnt Bingo yet.*`tangy teach`.*`tangy learn`"):
         load_policy(store, activity)
 
 
-def test_a_kept_policy_comes_back_the_same(
+def test_a_stored_policy_is_read_back_unchanged(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     policy = learnt(activity, shown, store)
@@ -145,7 +145,7 @@ def test_a_kept_policy_comes_back_the_same(
     assert again == policy
 
 
-def test_the_last_policy_of_each_activity_counts(
+def test_the_newest_policy_of_each_activity_is_loaded(
     store: Store,
     activity: Activity,
     lanterns: Activity,
@@ -161,7 +161,7 @@ def test_the_last_policy_of_each_activity_counts(
     assert load_policy(store, lanterns)[0] == other
 
 
-def test_later_demonstrations_do_not_change_a_kept_policy(
+def test_later_demonstrations_do_not_change_a_stored_policy(
     store: Store, activity: Activity, shown: list[Demonstration], demonstrate: Demonstrate
 ) -> None:
     policy = learnt(activity, shown, store)
@@ -169,7 +169,7 @@ def test_later_demonstrations_do_not_change_a_kept_policy(
     assert load_policy(store, activity) == (policy, [])
 
 
-def test_a_policy_whose_demonstrations_are_gone_is_refused(
+def test_a_policy_without_its_demonstrations_is_refused(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     learnt(activity, shown, store)
@@ -178,7 +178,7 @@ def test_a_policy_whose_demonstrations_are_gone_is_refused(
         load_policy(store, activity)
 
 
-def test_another_version_that_votes_alike_is_said(
+def test_another_version_with_equal_decisions_is_reported(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     policy = learnt(activity, shown, store)
@@ -189,7 +189,7 @@ def test_another_version_that_votes_alike_is_said(
     assert notices == [NotAsKept(policy.name, moved, ())]
 
 
-def test_a_decision_that_changed_is_said_row_by_row(
+def test_changed_decisions_are_reported_row_by_row(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     policy = learnt(activity, shown, store)
@@ -204,7 +204,7 @@ def test_a_decision_that_changed_is_said_row_by_row(
     assert f"{' / '.join(where)}: was juggle, is now {was}." in told
 
 
-def test_a_step_undone_after_learning_is_said(
+def test_a_step_undone_after_learning_is_reported(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     learnt(activity, shown, store)
@@ -217,7 +217,7 @@ def test_a_step_undone_after_learning_is_said(
     assert notice.versions == ()
 
 
-def test_policies_are_compared_by_what_they_do(
+def test_policies_are_compared_by_their_decisions(
     activity: Activity, shown: list[Demonstration]
 ) -> None:
     policy = learn_policy(activity, shown, settings=FEW)
@@ -235,7 +235,7 @@ def test_policies_are_compared_by_what_they_do(
     assert changes(replace(kept, asks=None), policy) == []
 
 
-def test_a_row_that_becomes_contested_is_a_difference(
+def test_a_newly_contested_row_is_a_difference(
     activity: Activity, shown: list[Demonstration]
 ) -> None:
     kept = learn_policy(activity, shown, settings=FEW).record()
@@ -245,7 +245,7 @@ def test_a_row_that_becomes_contested_is_a_difference(
     assert changes(kept, now) == [DecisionChange(first.state.situation, "greeting", ASKS)]
 
 
-def test_a_name_by_count_is_never_given_to_two_policies(
+def test_a_default_name_is_never_given_to_two_policies(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     first = learn_policy(activity, shown[:1], settings=FEW)

@@ -1,4 +1,4 @@
-"""What a teacher said, and Tangy did not understand, becomes a phrase of that teacher's."""
+"""A teacher's own phrases: words that Tangy did not understand, and learnt afterwards."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_only_the_next_command_can_be_what_was_meant(workspace: Workspace) -> No
     assert asked(show(teaching, "greet everyone")) == []
 
 
-def test_words_that_were_not_understood_are_asked_about_once_what_was_meant_was_typed(
+def test_tangy_offers_to_learn_words_after_the_meaning_was_typed(
     workspace: Workspace,
 ) -> None:
     teaching = session(workspace)
@@ -66,7 +66,7 @@ def test_words_that_were_not_understood_are_asked_about_once_what_was_meant_was_
     assert (remark.words, remark.step.behaviour) == (WORDS, "greeting")
 
 
-def test_kept_words_are_a_phrase_at_once_and_in_the_next_session_of_that_teacher_alone(
+def test_kept_words_become_a_phrase_of_that_teacher_only(
     workspace: Workspace,
 ) -> None:
     teaching = session(workspace)
@@ -80,7 +80,7 @@ def test_kept_words_are_a_phrase_at_once_and_in_the_next_session_of_that_teacher
     assert meant(session(workspace, "Bea"), WORDS) is None
 
 
-def test_words_that_were_chosen_among_offers_are_asked_about(workspace: Workspace) -> None:
+def test_tangy_offers_to_learn_words_after_a_choice(workspace: Workspace) -> None:
     teaching = session(workspace)
     offers = tuple(Command(b, {}, 0.5, WORDS, ()) for b in ("joke", "greeting"))
     teaching.apply(Say(WORDS, 0.5, offers, sure=False))
@@ -90,7 +90,7 @@ def test_words_that_were_chosen_among_offers_are_asked_about(workspace: Workspac
 
 
 @pytest.mark.parametrize("answer", ["keep", "later"])
-def test_words_are_asked_about_only_once(workspace: Workspace, answer: str) -> None:
+def test_tangy_offers_to_learn_words_only_once(workspace: Workspace, answer: str) -> None:
     teaching = session(workspace)
     say(teaching, WORDS)
     show(teaching, "greet everyone")
@@ -106,21 +106,19 @@ def test_words_are_asked_about_only_once(workspace: Workspace, answer: str) -> N
     "words",
     ["stop the robot", "yes that is right", "undo that", "call number", "", "rosa's 4 numbers"],
 )
-def test_words_that_mean_something_else_are_not_asked_about(
-    workspace: Workspace, words: str
-) -> None:
+def test_tangy_does_not_offer_words_with_another_meaning(workspace: Workspace, words: str) -> None:
     teaching = session(workspace)
     say(teaching, words)
     assert asked(show(teaching, "greet everyone")) == []
 
 
-def test_words_for_going_to_somebody_are_not_asked_about(workspace: Workspace) -> None:
+def test_tangy_does_not_offer_words_for_going_to_a_person(workspace: Workspace) -> None:
     teaching = session(workspace)
     say(teaching, "over there")
     assert asked(show(teaching, "go to user 1")) == []
 
 
-def test_a_removed_phrase_is_none_any_more_and_is_not_asked_about_again(
+def test_a_removed_phrase_is_not_offered_again(
     workspace: Workspace,
 ) -> None:
     teaching = session(workspace)

@@ -1,4 +1,4 @@
-"""What is no phrase is understood by what was learnt, or offered, or left alone."""
+"""Paraphrases: understood by the learnt intent model, offered, or ignored."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ VISITS = [
 
 
 @pytest.mark.parametrize(("text", "behaviour"), REQUESTS)
-def test_requests_in_other_words_are_understood_at_both_doors(text: str, behaviour: str) -> None:
+def test_paraphrases_are_understood_typed_and_spoken(text: str, behaviour: str) -> None:
     typed = BOOK.understand(text)
     assert typed is not None and typed.behaviour == behaviour
     heard = understand(clearly_heard(text), BOOK, USUAL)
@@ -60,14 +60,14 @@ def test_requests_in_other_words_are_understood_at_both_doors(text: str, behavio
 
 
 @pytest.mark.parametrize(("text", "user"), VISITS)
-def test_whom_to_go_to_is_found_in_other_words_too(text: str, user: str) -> None:
+def test_a_paraphrase_names_the_person_to_visit(text: str, user: str) -> None:
     found = BOOK.understand(text)
     assert found is not None
     assert (found.behaviour, dict(found.arguments)) == ("navigate to user", {"user": user})
 
 
 @pytest.mark.parametrize("name", list(BINGO.behaviours))
-def test_the_names_of_behaviours_are_understood_at_both_doors(name: str) -> None:
+def test_names_of_behaviours_are_understood_typed_and_spoken(name: str) -> None:
     typed = BOOK.understand(name)
     assert typed is not None and typed.behaviour == name
     assert behaviour_of(understand(clearly_heard(name), BOOK, USUAL)) == name
@@ -87,19 +87,19 @@ def test_the_names_of_behaviours_are_understood_at_both_doors(name: str) -> None
         "\u0000 \u202e",
     ],
 )
-def test_other_talk_asks_for_nothing(text: str) -> None:
+def test_everyday_talk_is_no_command(text: str) -> None:
     said = understand(clearly_heard(text), BOOK, USUAL)
     assert behaviour_of(said) is None
 
 
-def test_phrases_count_as_they_did_before_anything_was_learnt() -> None:
+def test_the_intent_model_changes_no_phrase() -> None:
     plain = Phrasebook(BINGO, PEOPLE)
     for phrase in plain.phrases:
         assert BOOK.understand(phrase) == plain.understand(phrase)
 
 
 @pytest.mark.slow
-def test_an_activity_that_nobody_has_seen_is_learnt_from_its_own_words(
+def test_the_model_of_a_new_activity_is_learnt_from_its_phrases(
     lanterns: Activity, tmp_path: Path
 ) -> None:
     intents = Intents(tmp_path)
@@ -112,7 +112,7 @@ def test_an_activity_that_nobody_has_seen_is_learnt_from_its_own_words(
 
 
 @pytest.mark.slow
-def test_what_was_learnt_is_read_again_and_believed_only_if_it_fits(
+def test_a_stored_model_is_used_only_if_it_fits_the_activity(
     lanterns: Activity, tmp_path: Path
 ) -> None:
     model = Intents(tmp_path).model(lanterns)
@@ -123,45 +123,45 @@ def test_what_was_learnt_is_read_again_and_believed_only_if_it_fits(
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"behaviours":["a"],"offsets":["x"]}', "[[[["])
-def test_what_is_no_model_is_refused(text: str) -> None:
+def test_an_invalid_model_is_refused(text: str) -> None:
     with pytest.raises(UnreadableModel):
         read_model(text)
 
 
 @pytest.mark.parametrize("name", list(shipped_activities()))
-def test_what_comes_with_tangy_was_learnt_from_the_words_that_come_with_it(name: str) -> None:
+def test_every_shipped_activity_has_a_current_shipped_model(name: str) -> None:
     assert (SHIPPED / f"{digest_of(load_activity(name))}.json").exists(), (
         "run: python -m tangy_tui.language.intent_training"
     )
 
 
-def test_nothing_comes_with_tangy_that_was_learnt_from_other_words() -> None:
+def test_every_shipped_model_belongs_to_a_shipped_activity() -> None:
     shipped = {digest_of(load_activity(name)) for name in shipped_activities()}
     assert {file.stem for file in SHIPPED.glob("*.json")} - shipped == set(), (
         "run: python -m tangy_tui.language.intent_training"
     )
 
 
-def test_other_words_make_another_digest() -> None:
+def test_other_phrases_change_the_digest() -> None:
     greeting = BINGO.behaviours["greeting"]
     other = replace(greeting, phrases=(*greeting.phrases, "hi all"))
     changed = replace(BINGO, behaviours={**BINGO.behaviours, "greeting": other})
     assert digest_of(changed) != digest_of(BINGO)
 
 
-def test_a_model_is_written_as_it_is_read() -> None:
+def test_a_model_is_read_back_unchanged() -> None:
     model = IntentModel(("", "a"), (0.0, 1.5), {"b": (0.25, -1.0)})
     assert read_model(model.to_json()) == model
     assert json.loads(model.to_json())["behaviours"] == ["", "a"]
 
 
-def test_each_example_stands_once_and_asks_for_a_behaviour_or_nothing() -> None:
+def test_training_examples_are_unique_and_cover_every_behaviour() -> None:
     examples = examples_of(BINGO)
     assert len({one.words for one in examples}) == len(examples)
     assert {one.behaviour for one in examples} == {"", *BINGO.behaviours}
 
 
-def test_a_mention_is_one_token_whoever_it_is() -> None:
+def test_every_mention_of_a_person_is_one_token() -> None:
     mentions = Mentions(BOOK.table, BOOK.nouns)
     for who in ("user 2", "the second player", "user number two", "user 2's", "user two's"):
         found = mentions.find(words_of(f"look at {who} card"))
@@ -170,7 +170,7 @@ def test_a_mention_is_one_token_whoever_it_is() -> None:
     assert mentions.find(words_of("look at user 9")).strangers
 
 
-def test_other_wordings_are_learnt_but_not_listened_for() -> None:
+def test_wordings_are_training_data_but_no_phrases() -> None:
     examples = {example.words: example.behaviour for example in examples_of(BINGO)}
     for behaviour in BINGO.behaviours.values():
         for text in behaviour.wordings:
@@ -178,7 +178,7 @@ def test_other_wordings_are_learnt_but_not_listened_for() -> None:
             assert words_of(text) not in {phrase.words for phrase in BOOK.table.all()}
 
 
-def test_wordings_of_a_declared_activity_are_learnt_as_well(tmp_path: Path) -> None:
+def test_wordings_of_a_declared_activity_are_training_data(tmp_path: Path) -> None:
     phrases = 'phrases = ["give a hint", "help with the question"]\n'
     worded = f'{phrases}wordings = ["make it a little easier"]\n'
     activity = changed_trivia(tmp_path, (phrases, worded))
@@ -186,7 +186,7 @@ def test_wordings_of_a_declared_activity_are_learnt_as_well(tmp_path: Path) -> N
     assert examples[words_of("make it a little easier")] == "give hint"
 
 
-def test_a_wording_belongs_to_one_behaviour_and_is_small_letters(tmp_path: Path) -> None:
+def test_a_wording_must_be_unique_and_in_lower_case(tmp_path: Path) -> None:
     phrases = 'phrases = ["that is right"]\n'
     for wording, problem in (("give a hint", "belongs to"), ("Well Done!", "small letters")):
         with pytest.raises(ProfileError, match=problem):

@@ -1,4 +1,4 @@
-"""People's spoken answers: which words are one, and how sure it is that they were said."""
+"""Spoken answers of people: their words, and the confidence that they were said."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def taken(words: str, phrase: str, margin: float = 0.0) -> Say | Reply | None:
         ("the crow", "the dove", 0.0, False),
     ],
 )
-def test_what_both_decoders_hear_is_judged_and_what_one_hears_is_asked_again(
+def test_an_answer_counts_if_both_decoders_hear_it(
     words: str, phrase: str, margin: float, judged: bool
 ) -> None:
     said = taken(words, phrase, margin)
@@ -41,7 +41,7 @@ def test_what_both_decoders_hear_is_judged_and_what_one_hears_is_asked_again(
     assert (said.confidence >= CERTAIN) is judged
 
 
-def test_a_number_is_judged_as_the_item_has_it() -> None:
+def test_a_spoken_number_is_given_in_digits() -> None:
     assert taken("seven", "seven") == Say("7", BOTH_HEARD, None)
 
 
@@ -50,7 +50,7 @@ def test_other_words_and_other_sounds_are_no_answer() -> None:
     assert taken("the dove", "the dove", LEAST_ANSWER - 0.1) is None
 
 
-def test_a_yes_is_none_of_their_answers() -> None:
+def test_a_yes_is_no_answer_to_an_item() -> None:
     assert taken("yes please", "yes please") == Reply(True)
     assert taken("yes please", "the dove") is None
 
@@ -73,12 +73,12 @@ def test_a_phrase_that_is_also_a_yes_stays_a_command() -> None:
     assert said.commands
 
 
-def test_without_spoken_answers_nothing_of_people_is_taken() -> None:
+def test_no_answer_is_taken_if_spoken_answers_are_off() -> None:
     evidence = AcousticEvidence("the dove", "the dove", 0.0, 1.0, 1.0)
     assert replied(evidence, USUAL, (), IN_GAMES, GIVEN, answers=False) == (None, None)
 
 
-def test_what_can_be_answered_is_listened_for_but_no_single_letters() -> None:
+def test_the_vocabulary_includes_answers_but_no_single_letters() -> None:
     trivia = Phrasebook(declared("trivia"), load_people(2))
     options = trivia.table.answers
     assert "a bakery" in options

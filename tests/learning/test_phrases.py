@@ -1,4 +1,4 @@
-"""The phrasebook as data: seats, and the laws that hold for every activity and everybody."""
+"""The phrasebook as data: seats, and laws for every activity and group."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ class TestSeats:
         assert meaning(book, text) == ("navigate to user", user)
 
     @pytest.mark.parametrize("text", ["go to seat 5", "drive over to seat number nine"])
-    def test_a_seat_that_is_not_there_is_nobodys(self, text: str) -> None:
+    def test_an_unknown_seat_names_no_person(self, text: str) -> None:
         book = Phrasebook(BINGO, seated(4))
         assert book.understand(text) is None
         assert book.stranger(text) == f"seat {words_of(text)[-1]}"
 
-    def test_numbers_of_seats_and_of_people_are_kept_apart(self) -> None:
+    def test_numbers_of_seats_and_people_are_distinguished(self) -> None:
         people = NAMED.placed([Person("user7", "Ada"), Person("user1", "Bob")])
         book = Phrasebook(BINGO, people)
         assert meaning(book, "go to seat 1") == ("navigate to user", "user7")
@@ -67,7 +67,7 @@ class TestSeats:
         assert book.understand("go to user 2") is None
         assert book.stranger("go to seat 7") == "seat 7"
 
-    def test_a_seat_has_its_name_only_in_its_own_place(self) -> None:
+    def test_a_seat_name_exists_only_if_the_seat_is_used(self) -> None:
         assert "go to the window seat" in Phrasebook(BINGO, seated(4, NAMED)).phrases
         assert "go to the window seat" not in Phrasebook(BINGO, seated(3, NAMED)).phrases
 
@@ -77,7 +77,7 @@ class TestSeats:
             ("window",), (), ("door",), (),
         ]  # fmt: skip
 
-    def test_another_activity_goes_to_seats_in_its_own_words(self, lanterns: Activity) -> None:
+    def test_another_activity_names_seats_in_its_own_words(self, lanterns: Activity) -> None:
         book = Phrasebook(lanterns, seated(4, NAMED))
         assert meaning(book, "walk to seat three") == ("walk over", "user3")
         assert meaning(book, "walk to the door seat") == ("walk over", "user3")
@@ -109,7 +109,7 @@ class TestLaws:
                 assert meaning(book, one) == (behaviour.name, None)
 
     @given(st.lists(st.text(max_size=20), min_size=1, max_size=7), st.text(max_size=20), st.data())
-    def test_another_person_changes_nothing_of_what_the_others_are_called(
+    def test_a_further_person_changes_no_phrase_for_the_others(
         self, names: list[str], name: str, data: st.DataObject
     ) -> None:
         people = ROOM.placed([Person(f"user{n}", one) for n, one in enumerate(names, 1)])
@@ -124,7 +124,7 @@ class TestLaws:
             assert meaning(after, text) == meaning(before, text)
 
     @pytest.mark.parametrize("count", [1, 4, 8])
-    def test_completion_and_what_is_heard_agree(self, lanterns: Activity, count: int) -> None:
+    def test_completions_and_spoken_phrases_agree(self, lanterns: Activity, count: int) -> None:
         for each in (BINGO, lanterns):
             book = Phrasebook(each, seated(count))
             now = meanings(book)
@@ -134,7 +134,7 @@ class TestLaws:
                 assert book.phrases[said] == now[words_of(said)][0]
                 assert book.complete(said)[0].startswith(said.partition(" ")[0])
 
-    def test_names_of_people_do_not_reach_the_activity(self) -> None:
+    def test_names_of_people_change_no_meaning_of_a_phrase(self) -> None:
         plain = Phrasebook(BINGO, ())
         named = Phrasebook(BINGO, ROOM.placed([Person("user1", "Mark", "M AA K")]))
         for text in plain.phrases:
@@ -142,7 +142,7 @@ class TestLaws:
 
 
 class TestThePage:
-    def test_it_has_every_phrase_person_and_word(self, activity: Activity) -> None:
+    def test_the_list_has_every_phrase_person_and_word(self, activity: Activity) -> None:
         listed = list_phrases(activity, seated(4, NAMED))
         assert [ways.behaviour for ways in listed.behaviours] == list(activity.behaviours)
         for ways in listed.behaviours:
@@ -151,7 +151,7 @@ class TestThePage:
         assert {said.word for said in listed.words} >= {"bingo", "window", "two"}
         assert not listed.left_out
 
-    def test_what_is_searched_is_found_wherever_it_stands(self, activity: Activity) -> None:
+    def test_a_search_finds_words_in_any_order(self, activity: Activity) -> None:
         entries = list(items(list_phrases(activity, seated(4))))
         assert [entry.about for entry in entries if entry.has("FUNNY say")] == ["tell a joke"]
         assert [entry.about for entry in entries if entry.has("seat 2")] == ["User 2"]

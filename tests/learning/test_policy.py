@@ -1,4 +1,4 @@
-"""The forest: exact after any covering demonstration, the same everywhere, honest about doubt."""
+"""The forest: exact after any covering demonstration, reproducible, and marked where unsure."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def everything(activity: Activity, *without: Situation) -> list[tuple[Situation,
 
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 50, 10))
-def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
+def test_the_policy_is_exact_after_any_covering_demonstration(
     first: int, activity: Activity, cover: Cover
 ) -> None:
     for seed in range(first, first + 10):
@@ -69,7 +69,9 @@ def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
 
 
 @pytest.mark.slow
-def test_the_papers_bagging_is_exact_too_with_lower_votes(activity: Activity, cover: Cover) -> None:
+def test_the_bagging_of_the_paper_is_exact_with_lower_votes(
+    activity: Activity, cover: Cover
+) -> None:
     for seed in range(10):
         shown = cover("bingo", seed, 1 + seed % 8)
         policy = learn_policy(activity, shown, settings=replace(PAPER, seed=seed))
@@ -88,7 +90,7 @@ def test_every_reachable_joint_state_is_decided_as_expected(
 
 
 @pytest.mark.slow
-def test_it_is_exact_when_one_behaviour_was_shown_a_hundred_times_and_another_once(
+def test_the_policy_is_exact_despite_imbalanced_demonstrations(
     activity: Activity,
 ) -> None:
     often = Situation("facilitate", "ANR", "occluded")
@@ -97,9 +99,7 @@ def test_it_is_exact_when_one_behaviour_was_shown_a_hundred_times_and_another_on
         assert learn_policy(activity, [showing(*rows)], settings=settings).exact(activity)
 
 
-def test_a_made_up_activity_is_learnt_exactly_by_the_same_code(
-    lanterns: Activity, cover: Cover
-) -> None:
+def test_a_made_up_activity_is_learnt_exactly(lanterns: Activity, cover: Cover) -> None:
     policy = learn_policy(lanterns, cover("lanterns", 1, 5))
     assert policy.exact(lanterns)
     assert {policy.decide(s).behaviour for s in lanterns.situations} == set(lanterns.behaviours)
@@ -108,7 +108,7 @@ def test_a_made_up_activity_is_learnt_exactly_by_the_same_code(
 # --------------------------------------------------------------------------- the same again
 
 
-def test_it_depends_on_what_was_shown_and_on_nothing_else(activity: Activity) -> None:
+def test_the_policy_depends_only_on_the_rows(activity: Activity) -> None:
     rows = everything(activity)
     one = learn_policy(activity, [showing(*rows)], settings=FEW)
     parts = [showing(*rows[:4], id="a"), showing(*rows[4:], id="b")]
@@ -136,7 +136,7 @@ def test_the_digest_changes_with_rows_settings_and_seed(activity: Activity) -> N
 
 
 @pytest.mark.slow
-def test_another_process_learns_the_same_bit_for_bit(
+def test_another_process_learns_an_identical_policy(
     activity: Activity, demonstrate: Callable[[str, int, int], Demonstration]
 ) -> None:
     shown = demonstrate("bingo", 5, 4)
@@ -180,7 +180,7 @@ def test_there_is_a_decision_for_every_combination(activity: Activity, covered: 
     assert set(activity.situations) < set(covered.table)
 
 
-def test_votes_are_shares_most_first_and_the_first_is_done(covered: Policy) -> None:
+def test_votes_are_sorted_shares_and_the_first_decides(covered: Policy) -> None:
     for decision in covered.table.values():
         shares = [share for _, share in decision.votes]
         assert shares == sorted(shares, reverse=True)
@@ -189,7 +189,7 @@ def test_votes_are_shares_most_first_and_the_first_is_done(covered: Policy) -> N
         assert (decision.behaviour, decision.share) == decision.votes[0]
 
 
-def test_it_says_how_often_each_situation_was_shown(
+def test_a_decision_counts_the_demonstrations_of_its_situation(
     activity: Activity, cover: Cover, covered: Policy
 ) -> None:
     rows, _ = training_rows(cover("bingo", 1, 4))
@@ -197,7 +197,7 @@ def test_it_says_how_often_each_situation_was_shown(
     assert {s: d.seen for s, d in covered.table.items() if d.seen} == counts
 
 
-def test_what_was_shown_is_sure_and_what_never_was_is_not(activity: Activity) -> None:
+def test_only_demonstrated_situations_are_sure(activity: Activity) -> None:
     for missing in activity.situations:
         shown = [showing(*everything(activity, missing))]
         policy = learn_policy(activity, shown, settings=FEW)
@@ -209,7 +209,7 @@ def test_what_was_shown_is_sure_and_what_never_was_is_not(activity: Activity) ->
 
 
 @pytest.mark.parametrize(("right", "wrong"), [(99, 1), (9, 1), (2, 1), (2, 2)])
-def test_nothing_is_outvoted_until_a_teacher_says_what_is_right(
+def test_a_conflict_is_decided_by_a_teacher_and_not_by_votes(
     right: int, wrong: int, activity: Activity
 ) -> None:
     where = Situation("help", "AR", "missing numbers")
@@ -231,7 +231,7 @@ def test_nothing_is_outvoted_until_a_teacher_says_what_is_right(
         assert settled.behaviour in answers
 
 
-def test_what_is_kept_of_a_policy_is_plain_json(covered: Policy) -> None:
+def test_the_record_of_a_policy_is_plain_json(covered: Policy) -> None:
     kept = covered.record().body
     assert json.loads(json.dumps(kept)) == kept
     assert kept["digest"] == covered.digest
@@ -243,13 +243,13 @@ def test_what_is_kept_of_a_policy_is_plain_json(covered: Policy) -> None:
 # ---------------------------------------------------------------------------------- refusals
 
 
-def test_from_nothing_nothing_is_learnt(activity: Activity) -> None:
+def test_learning_without_steps_is_refused(activity: Activity) -> None:
     for shown in ([], [showing()]):
         with pytest.raises(NothingToLearnFrom, match="demonstrate a game first"):
             learn_policy(activity, shown)
 
 
-def test_demonstrations_of_the_activity_as_it_was_are_refused_by_name(
+def test_demonstrations_of_an_older_activity_are_refused(
     activity: Activity, lanterns: Activity
 ) -> None:
     rows = everything(activity)
@@ -259,7 +259,7 @@ def test_demonstrations_of_the_activity_as_it_was_are_refused_by_name(
         learn_policy(activity, [showing(*rows, (rows[0][0], "sing"))])
 
 
-def test_a_situation_of_another_activity_is_no_key(covered: Policy) -> None:
+def test_a_situation_of_another_activity_has_no_decision(covered: Policy) -> None:
     with pytest.raises(KeyError):
         covered.decide(Situation("arriving", "ANR", "hidden"))
 

@@ -1,4 +1,4 @@
-"""Recordings are labelled by their names, counted right, and reported in 80 columns."""
+"""Practice recordings: labelled by their names, counted, and reported in 80 columns."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def write(file: Path, number: int = 0) -> Path:
 
 
 class Hears:
-    """A recogniser that hears of each recording what the test says."""
+    """A recogniser with a given text for each recording."""
 
     pid = None
 
@@ -105,12 +105,12 @@ class TestNames:
             ("017.wav", UtteranceLabel(None, named=False)),
         ],
     )
-    def test_say_what_was_said(
+    def test_the_file_name_gives_the_command(
         self, name: str, said: UtteranceLabel, book: Phrasebook, tmp_path: Path
     ) -> None:
         assert Labels(book).of(tmp_path / name, tmp_path) == said
 
-    def test_the_folder_itself_may_be_an_intent_but_not_no_command(
+    def test_the_top_folder_may_name_a_command_but_not_noise(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         labels = Labels(book)
@@ -121,7 +121,7 @@ class TestNames:
         ):
             assert labels.of(tmp_path / folder / name, tmp_path / folder) == said
 
-    def test_of_another_activity_are_read_by_its_own_words(
+    def test_file_names_use_the_phrases_of_the_activity(
         self, lanterns: Activity, people: tuple[Person, ...], tmp_path: Path
     ) -> None:
         labels = Labels(Phrasebook(lanterns, people))
@@ -132,7 +132,7 @@ class TestNames:
 
 
 class TestFolders:
-    def test_recordings_are_found_at_any_depth_and_the_rest_is_said(
+    def test_recordings_are_found_at_any_depth_and_other_files_reported(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         there = write(tmp_path / "a" / "b" / "joke.wav")
@@ -148,9 +148,7 @@ class TestFolders:
             "notes.txt": "is not a WAV file",
         }
 
-    def test_without_recordings_are_refused_in_a_sentence(
-        self, book: Phrasebook, tmp_path: Path
-    ) -> None:
+    def test_folders_without_recordings_are_refused(self, book: Phrasebook, tmp_path: Path) -> None:
         with pytest.raises(TangyError, match="there are no WAV files"):
             Labels(book).find(tmp_path)
         write(tmp_path / "foo" / "1.wav")
@@ -201,7 +199,7 @@ class TestCounting:
         assert sum(sum(row.values()) for row in document["confusion"].values()) == 12
         assert len(document["rows"]) == 12
 
-    async def test_an_unsure_one_is_offered_or_wrong(
+    async def test_an_uncertain_command_counts_as_offered_or_wrong(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         unsure = "a joke for the group"
@@ -215,7 +213,7 @@ class TestCounting:
         assert practice.false_accepts() == (0, 1)
         assert practice.share("right", "offered") == 0.5
 
-    async def test_what_cannot_be_read_or_decoded_is_told_and_the_rest_goes_on(
+    async def test_unreadable_recordings_are_reported_and_skipped(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         (tmp_path / "celebrate.wav").write_bytes(b"no sound at all")
@@ -225,7 +223,7 @@ class TestCounting:
             "celebrate.wav": "is not a WAV file", "joke-2.wav": "could not be decoded"
         }  # fmt: skip
 
-    async def test_what_ends_early_is_heard_and_told(
+    async def test_truncated_recordings_are_decoded_and_reported(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         cut = write(tmp_path / "joke-2.wav", 1)
@@ -235,7 +233,7 @@ class TestCounting:
         assert practice.document()["cut_off"] == ["joke-2.wav"]
         assert practice_lines(practice)[-1] == "  joke-2.wav"
 
-    async def test_what_is_named_wrongly_is_left_out_of_all_figures_and_counted(
+    async def test_wrongly_named_recordings_are_excluded_from_the_figures(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         said = {"foo/1.wav": "tell a joke", "foo/2.wav": "stop", "jkoe/1.wav": "tell a joke"}
@@ -252,7 +250,7 @@ class TestCounting:
         one = practice_lines(await heard(tmp_path / "set", book, self.SAID))
         assert "1 recording was left out: its name is no intent, and not none:" in one
 
-    async def test_only_sounds_that_are_no_command_have_no_accuracy(
+    async def test_recordings_without_commands_have_no_accuracy(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         practice = await heard(tmp_path, book, {"noise.wav": ""})
@@ -262,9 +260,7 @@ class TestCounting:
 
 
 class TestReport:
-    async def test_fits_into_80_columns_however_much_there_is(
-        self, book: Phrasebook, tmp_path: Path
-    ) -> None:
+    async def test_the_report_fits_into_80_columns(self, book: Phrasebook, tmp_path: Path) -> None:
         said = {}
         for number, phrase in enumerate(book.spoken()):
             said[f"{'x' * 60}/{phrase}-{number:03}.wav"] = phrase
@@ -274,7 +270,7 @@ class TestReport:
         assert not any("\x1b" in line for line in lines)
         assert "  and " in lines[-1]
 
-    async def test_a_wide_matrix_goes_on_below_with_the_rows_that_have_something_there(
+    async def test_a_wide_matrix_continues_below_without_empty_rows(
         self, book: Phrasebook, activity: Activity, tmp_path: Path
     ) -> None:
         said = {f"{b.name}/1.wav": b.phrases[0] for b in activity.behaviours.values()}

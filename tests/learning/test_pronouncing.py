@@ -1,4 +1,4 @@
-"""How words are said: looked up, guessed, written as espeak-ng says it; and names of people."""
+"""Pronunciations: looked up, guessed, converted from espeak-ng; and names of people."""
 # ruff: noqa: RUF001 - some letters are IPA
 
 from __future__ import annotations
@@ -37,15 +37,13 @@ def nowhere(program: str) -> None:
 
 
 class TestPhones:
-    def test_there_are_39_and_each_can_be_said_and_read_back(self) -> None:
+    def test_each_of_the_39_phones_converts_to_espeak_and_back(self) -> None:
         assert len(PHONES) == 39
         assert set(TO_ESPEAK) == PHONES
         assert {phone for said in FROM_IPA.values() for phone in said.split()} == PHONES
 
     @given(phones, st.data())
-    def test_stress_case_and_spaces_are_of_no_account(
-        self, said: list[str], data: st.DataObject
-    ) -> None:
+    def test_stress_case_and_spaces_are_ignored(self, said: list[str], data: st.DataObject) -> None:
         marked = [
             phone.lower() if data.draw(st.booleans()) else phone + data.draw(st.sampled_from("012"))
             for phone in said
@@ -71,7 +69,7 @@ class TestPhones:
         with pytest.raises(ProfileError, match=f"'{wrong}'; did you mean '{right}'"):
             read_phones(f"B {wrong} T")
 
-    def test_a_name_has_as_many_words_as_are_pronounced(self) -> None:
+    def test_a_name_needs_phones_for_each_of_its_words(self) -> None:
         assert check_name("r ow z ah, l iy", "Rosa Lee") == "R OW Z AH, L IY"
         with pytest.raises(ProfileError, match="has 2 words"):
             check_name("R OW Z AH", "Rosa Lee")
@@ -88,13 +86,13 @@ class TestPhones:
 
 
 class TestLookingUp:
-    def test_words_have_their_pronunciations_the_usual_one_first(self) -> None:
+    def test_the_usual_pronunciation_comes_first(self) -> None:
         assert pronounce("number") == ("N AH M B ER",)
         assert pronounce("The")[0] == "DH AH"
         assert len(pronounce("the")) == 2
 
     @pytest.mark.parametrize("word", ["xanthippus", "", " ", "a b", "the(2)", "\n", "李", "B", "%"])
-    def test_what_is_no_word_of_it_has_none(self, word: str) -> None:
+    def test_an_unknown_word_has_no_pronunciation(self, word: str) -> None:
         if word != "B":
             assert pronounce(word) == ()
         else:
@@ -105,7 +103,7 @@ class TestLookingUp:
         for way in pronounce(text):
             assert set(way.split()) <= PHONES
 
-    def test_it_does_not_load_the_decoder(self) -> None:
+    def test_looking_up_a_word_does_not_load_the_decoder(self) -> None:
         code = (
             "import sys; from tangy_tui.language.pronunciation import pronounce, suggest\n"
             "assert pronounce('joke'); sys.exit('pocketsphinx' in sys.modules)"
@@ -120,7 +118,7 @@ class TestGuessing:
         ("word", "said"),
         [("hats", "HH AE T S"), ("mats", "M AE T S"), ("in", "IH N"), ("", "")],
     )
-    def test_words_are_said_as_those_that_are_spelled_alike(self, word: str, said: str) -> None:
+    def test_a_guess_follows_words_of_similar_spelling(self, word: str, said: str) -> None:
         assert spelling.guess(word, self.DICTIONARY) == said
 
     @pytest.mark.parametrize(
@@ -131,12 +129,12 @@ class TestGuessing:
             ("butter", "B AH T ER", ("B", "AH", "", "T", "", "ER")),
         ],
     )
-    def test_phones_are_shared_out_among_letters(
+    def test_phones_are_aligned_with_letters(
         self, word: str, said: str, parts: tuple[str, ...]
     ) -> None:
         assert spelling.align(word, tuple(said.split())) == parts
 
-    def test_without_any_dictionary_it_still_says_something(self) -> None:
+    def test_a_guess_needs_no_dictionary(self) -> None:
         assert spelling.guess("rosa", "") == "R AA S AE"
 
     @pytest.mark.parametrize(
@@ -151,16 +149,16 @@ class TestGuessing:
             ("?_\x00_漢", ""),
         ],
     )
-    def test_what_espeak_writes_is_read(self, ipa: str, said: str) -> None:
+    def test_the_ipa_of_espeak_is_read(self, ipa: str, said: str) -> None:
         assert from_ipa(ipa) == said
 
-    def test_without_espeak_the_spelling_is_gone_by(self) -> None:
+    def test_the_guess_uses_the_spelling_without_espeak(self) -> None:
         assert espeak_phones.espeak_phones("rosa", nowhere) == ""
         guessed = suggest("xanthippe", nowhere)
         assert "N TH IH P" in guessed
         assert set(guessed.split()) <= PHONES
 
-    def test_nothing_is_made_up_for_another_script(self) -> None:
+    def test_words_in_another_script_get_no_guess(self) -> None:
         assert suggest("李雷") == suggest("42") == ""
         assert suggest_name("李雷") == ""
         assert how_said(Person("user1", "李雷")).source == ""
@@ -179,7 +177,9 @@ class TestGuessing:
 
 
 class TestInThePhrasebook:
-    def test_the_activity_and_people_say_how_words_are_said(self, activity: Activity) -> None:
+    def test_pronunciations_come_from_the_activity_and_from_people(
+        self, activity: Activity
+    ) -> None:
         people = [
             Person("user1", "Rosa Lee", "R OW S AH, L EY"),
             Person("user2", "Ada"),
@@ -190,16 +190,14 @@ class TestInThePhrasebook:
         assert (said["rosa"], said["lee"]) == (("R OW S AH",), ("L EY",))
         assert said.keys() == {"rosa", "lee", *activity.pronunciations}
 
-    def test_a_name_that_is_a_word_of_the_phrases_keeps_how_that_is_said(
-        self, activity: Activity
-    ) -> None:
+    def test_a_name_that_is_a_phrase_word_keeps_its_pronunciation(self, activity: Activity) -> None:
         book = Phrasebook(activity, [Person("user1", "Mark", "M AA K")])
         assert book.pronunciations()["mark"] == (*pronounce("mark"), "M AA K")
 
     @pytest.mark.parametrize(
         ("phones", "source", "heard"), [(None, "suggested", False), ("Z AA Q", "", False)]
     )
-    def test_a_name_that_nobody_can_say_is_not_heard(
+    def test_a_name_without_pronunciation_is_left_out(
         self, activity: Activity, phones: str | None, source: str, heard: bool
     ) -> None:
         person = Person("user1", "Xanthippus")
@@ -215,7 +213,7 @@ class TestInThePhrasebook:
         assert "go to xanthippus" not in lexicon.heard()
         assert set(out) | set(lexicon.heard()) == set(Phrasebook(activity, [person]).spoken())
 
-    def test_a_noted_name_is_heard(self, activity: Activity) -> None:
+    def test_a_name_with_given_phones_is_recognised(self, activity: Activity) -> None:
         book = Phrasebook(activity, [Person("user1", "Xanthippus", "Z AE N TH IH P AH S")])
         lexicon = Lexicon(book)
         assert lexicon.words["xanthippus"].source == "person"

@@ -1,4 +1,4 @@
-"""What is said of demonstrations: short, true, and only where there is something to say."""
+"""Notes on demonstrations: short, and only if there is something to note."""
 
 from __future__ import annotations
 
@@ -48,20 +48,20 @@ def notes(activity: Activity, library: Library, number: int) -> list[str]:
     return quality_notes(activity, library.find(str(number)), library)
 
 
-def test_of_a_good_demonstration_nothing_is_said(
+def test_a_good_demonstration_gets_no_note(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     assert notes(activity, library_of(store, *good), 1) == []
 
 
-def test_an_unfinished_one_says_so(
+def test_an_unfinished_demonstration_is_noted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     begun = replace(good[0], steps=good[0].steps[:5], finished=False)
     assert notes(activity, library_of(store, begun), 1) == ["not finished"]
 
 
-def test_steps_taken_back_are_counted(
+def test_undone_steps_are_counted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     log_demonstration(store, replace(good[0], steps=good[0].steps[:3], finished=False))
@@ -71,7 +71,7 @@ def test_steps_taken_back_are_counted(
     assert notes(activity, library, 1) == ["not finished", "2 steps taken back"]
 
 
-def test_what_could_not_be_carried_out_is_counted(
+def test_failed_steps_are_counted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     failed = (replace(good[0].steps[1], completed=False), *good[0].steps[2:])
@@ -86,7 +86,7 @@ def test_a_game_that_never_came_to_its_end_is_noted(
     assert notes(activity, library_of(store, short), 1) == ["ended before “celebrate the win”"]
 
 
-def test_disagreement_names_the_other_demonstration_until_it_is_settled(
+def test_a_conflict_names_the_other_demonstration_until_it_is_resolved(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     library = library_of(store, good[0], answering(good[1], WRONG, "encourage"))
@@ -100,7 +100,7 @@ def test_disagreement_names_the_other_demonstration_until_it_is_settled(
     assert notes(activity, library, 2) == [f"{wrong} step{plural} called wrong by a teacher"]
 
 
-def test_one_that_gives_two_answers_contradicts_itself(
+def test_a_demonstration_with_two_answers_contradicts_itself(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     calls = [n for n, s in enumerate(good[0].steps) if s.behaviour == "call number"]
@@ -110,7 +110,7 @@ def test_one_that_gives_two_answers_contradicts_itself(
     assert notes(activity, library, 1) == ["contradicts itself in 1 situation"]
 
 
-def test_an_unfinished_one_is_compared_too(
+def test_an_unfinished_demonstration_is_compared_too(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     other = replace(answering(good[1], WRONG, "encourage"), finished=False)
@@ -120,7 +120,7 @@ def test_an_unfinished_one_is_compared_too(
 
 
 @pytest.mark.slow
-def test_one_much_longer_than_the_others_is_noted(
+def test_an_unusually_long_demonstration_is_noted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     first, *others = good
@@ -130,7 +130,7 @@ def test_one_much_longer_than_the_others_is_noted(
     assert len(said) == 1 and said[0].startswith("much longer than usual")
 
 
-def test_how_it_came_about_is_said(
+def test_the_origin_of_a_demonstration_is_noted(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     library_of(store, *good[:3])
@@ -145,7 +145,7 @@ def test_how_it_came_about_is_said(
     assert said[6] == ("answered in a game",)
 
 
-def test_one_that_was_shown_again_names_the_step(
+def test_a_new_version_names_its_first_new_step(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     log_demonstration(store, good[0])
@@ -168,7 +168,7 @@ def test_one_that_was_shown_again_names_the_step(
     assert "shown again from step 7 of demonstration 1" in said
 
 
-def test_a_number_stays_when_more_is_shown(
+def test_the_number_of_a_demonstration_never_changes(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     library_of(store, *good[:2])
@@ -181,7 +181,7 @@ def test_a_number_stays_when_more_is_shown(
     assert library.number(good[2].id) == 4
 
 
-def test_rows_tell_what_there_is_and_are_documents(
+def test_rows_list_every_demonstration(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     library_of(store, *good[:2])
@@ -198,9 +198,7 @@ def test_rows_tell_what_there_is_and_are_documents(
     assert document["coverage"] == {"seen": rows[0].seen, "situations": rows[0].situations}
 
 
-def test_the_words_that_were_heard_are_found_by_step(
-    store: Store, good: list[Demonstration]
-) -> None:
+def test_heard_words_are_listed_by_step(store: Store, good: list[Demonstration]) -> None:
     log_demonstration(store, replace(good[0], steps=good[0].steps[:1], finished=False))
     second = encode(good[0].steps[1])
     append_body(

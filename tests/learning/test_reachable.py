@@ -1,4 +1,4 @@
-"""The reachable joint states: as many as reasoned, and every state that games come to."""
+"""The reachable joint states: their number, and every state of the games."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_four_people_have_242_joint_states(activity: Activity) -> None:
 
 
 @pytest.mark.parametrize("n", range(1, 9))
-def test_the_number_of_joint_states_is_as_reasoned(n: int, activity: Activity) -> None:
+def test_the_number_of_joint_states_matches_the_formula(n: int, activity: Activity) -> None:
     states = list(joint_states(activity, people(n)))
     quiet = 3  # start, socialize, facilitate
     beside = n * 2 ** (n - 1)  # somebody who asks, and any others who ask
@@ -55,7 +55,7 @@ def test_every_state_is_consistent(activity: Activity, lanterns: Activity) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["bingo", "lanterns"])
 @pytest.mark.parametrize("users", [1, 4, 8])
-def test_every_state_of_a_game_is_among_them(
+def test_every_state_of_a_game_is_reachable(
     name: str,
     users: int,
     activity: Activity,

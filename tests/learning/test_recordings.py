@@ -1,4 +1,4 @@
-"""What is said while teaching is kept only with consent, under what was verified, and forgotten."""
+"""Recordings of teaching: stored only with consent, labelled by verified commands, deletable."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def kept(recorder: Recorder) -> list[str]:
 
 
 class TestConsent:
-    def test_is_asked_of_each_teacher_and_can_be_taken_back(self, store: Store) -> None:
+    def test_consent_is_per_teacher_and_can_be_withdrawn(self, store: Store) -> None:
         assert not consented(store, "rosa")
         consent(store, "rosa", True)
         assert consented(store, "rosa")
@@ -93,7 +93,7 @@ class TestConsent:
         consent(store, "rosa", False)
         assert not consented(store, "rosa")
 
-    def test_forgetting_takes_it_back_for_everybody(self, store: Store) -> None:
+    def test_forgetting_recordings_withdraws_every_consent(self, store: Store) -> None:
         for teacher in ("rosa", "ben"):
             consent(store, teacher, True)
         forget_recordings(store)
@@ -102,7 +102,7 @@ class TestConsent:
         consent(store, "ben", True)
         assert consented(store, "ben")
 
-    def test_the_question_says_where_they_lie_and_how_they_are_deleted(self, store: Store) -> None:
+    def test_the_question_names_the_folder_and_the_command_to_delete(self, store: Store) -> None:
         question = consent_question(store.folder / FOLDER)
         assert str(store.folder / FOLDER) in question
         assert "tangy listen --forget-recordings" in question
@@ -112,7 +112,7 @@ class TestConsent:
 
 
 class TestKeeping:
-    def test_what_was_verified_is_kept_under_its_name(
+    def test_a_verified_utterance_is_stored_under_its_behaviour(
         self, recorder: Recorder, spoken: Callable[[str], Say], book: Phrasebook
     ) -> None:
         for text, behaviour, target in (
@@ -142,7 +142,7 @@ class TestKeeping:
         ]
         assert recorder.kept == 5
 
-    def test_it_is_the_sound_that_was_heard_and_only_its_owner_reads_it(
+    def test_a_recording_is_the_heard_sound_and_private(
         self, recorder: Recorder, spoken: Callable[[str], Say]
     ) -> None:
         recorder.heard(SOUND, spoken("tell a joke"))
@@ -153,7 +153,7 @@ class TestKeeping:
         for folder in (file.parent, recorder.folder):
             assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
-    def test_a_folder_that_others_could_read_is_closed_before_anything_is_recorded(
+    def test_a_readable_folder_is_made_private_before_recording(
         self, tmp_path: Path, spoken: Callable[[str], Say]
     ) -> None:
         there = tmp_path / "data" / FOLDER
@@ -167,7 +167,7 @@ class TestKeeping:
         recorder.verified("joke", None)
         assert stat.S_IMODE(of_jokes.stat().st_mode) == 0o700
 
-    def test_what_was_not_verified_is_not_kept(
+    def test_an_unverified_utterance_is_not_stored(
         self, recorder: Recorder, spoken: Callable[[str], Say]
     ) -> None:
         recorder.heard(SOUND, spoken("tell a joke"))
@@ -183,7 +183,7 @@ class TestKeeping:
         recorder.verified("call number", None)
         assert kept(recorder) == ["call-number/20260102T120000-1.wav"]
 
-    def test_what_was_typed_is_never_the_label_of_what_was_said_before(
+    def test_a_typed_command_never_labels_an_earlier_utterance(
         self, recorder: Recorder, spoken: Callable[[str], Say]
     ) -> None:
         recorder.heard(SOUND, Say("banana", 0.0, ()))
@@ -198,7 +198,7 @@ class TestKeeping:
         assert kept(recorder) == []
 
     @pytest.mark.parametrize("again", [Begun, StepUndone, NotUnderstood, Refused])
-    def test_what_closes_the_question_without_a_yes_drops_what_was_said(
+    def test_an_event_that_closes_the_question_drops_the_utterance(
         self,
         again: type,
         recorder: Recorder,
@@ -217,7 +217,7 @@ class TestKeeping:
         recorder.verified("joke", None)
         assert kept(recorder) == []
 
-    def test_an_answer_that_is_refused_keeps_what_was_said_for_the_next_one(
+    def test_a_refused_answer_keeps_the_utterance(
         self, recorder: Recorder, book: Phrasebook, teaching: TeachingSession
     ) -> None:
         commands = (*book.choices("tell a joke"), *book.choices("greet everyone"))
@@ -232,7 +232,7 @@ class TestKeeping:
             recorder.follow(teaching.apply(command))
         assert [name.partition("/")[0] for name in kept(recorder)] == ["greeting"]
 
-    def test_a_full_disk_is_told_once_and_teaching_goes_on(
+    def test_a_full_disk_is_reported_once_and_teaching_continues(
         self, tmp_path: Path, spoken: Callable[[str], Say]
     ) -> None:
         told: list[str] = []
@@ -247,7 +247,7 @@ class TestKeeping:
         assert told[0].startswith(str(recorder.folder))
         assert recorder.kept == 0
 
-    def test_a_session_of_teaching_can_be_followed(
+    def test_the_recorder_follows_a_teaching_session(
         self,
         recorder: Recorder,
         spoken: Callable[[str], Say],
@@ -267,7 +267,7 @@ class TestKeeping:
         assert [name.partition("/")[0] for name in kept(recorder)] == ["greeting"]
 
     @pytest.mark.parametrize("link", [FOLDER, f"{FOLDER}/joke"])
-    def test_nothing_is_recorded_through_a_link(
+    def test_nothing_is_recorded_through_a_symbolic_link(
         self, link: str, recorder: Recorder, spoken: Callable[[str], Say], tmp_path: Path
     ) -> None:
         elsewhere = tmp_path / "elsewhere"
@@ -284,7 +284,7 @@ class TestKeeping:
 
 
 class TestForgetting:
-    def test_deletes_what_was_recorded_and_nothing_else(
+    def test_forgetting_deletes_only_recordings(
         self, store: Store, spoken: Callable[[str], Say]
     ) -> None:
         recorder = Recorder(store.folder, "rosa", now=lambda: NOON)
@@ -299,7 +299,7 @@ class TestForgetting:
         assert forget_recordings(store) == (0, 0)
         assert not recorder.folder.exists()
 
-    def test_follows_no_link(self, store: Store, tmp_path: Path) -> None:
+    def test_forgetting_follows_no_symbolic_link(self, store: Store, tmp_path: Path) -> None:
         elsewhere = tmp_path / "elsewhere" / "joke"
         elsewhere.mkdir(parents=True)
         (elsewhere / "20260102T120000-1.wav").write_bytes(b"x")

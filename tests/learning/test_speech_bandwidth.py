@@ -1,4 +1,4 @@
-"""Sound of half the band gets an upper one; sound of the whole band is let be."""
+"""Bandwidth extension: half-band sound gains an upper band; full-band sound is unchanged."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _share_above(pcm: bytes, hertz: float) -> float:
 
 
 @pytest.mark.parametrize("hiss", [0.0, 2.0])
-def test_half_a_band_is_widened_and_keeps_what_it_has(hiss: float) -> None:
+def test_half_band_sound_gains_an_upper_band_and_keeps_its_lower(hiss: float) -> None:
     samples = _speech(upto=3_600) + hiss * np.random.default_rng(2).normal(size=RATE)
     pcm = _pcm(samples)
     made = widened(pcm)
@@ -47,11 +47,11 @@ def test_half_a_band_is_widened_and_keeps_what_it_has(hiss: float) -> None:
 
 
 @pytest.mark.parametrize("upto", [5_000, 8_000])
-def test_a_whole_band_is_let_be(upto: float) -> None:
+def test_full_band_sound_is_unchanged(upto: float) -> None:
     pcm = _pcm(_speech(upto=upto))
     assert widened(pcm) == pcm
 
 
 @given(st.binary(max_size=4_000))
-def test_any_bytes_give_as_many_samples(pcm: bytes) -> None:
+def test_widening_keeps_the_number_of_samples(pcm: bytes) -> None:
     assert len(widened(pcm)) // 2 == len(pcm) // 2

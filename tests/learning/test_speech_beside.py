@@ -1,4 +1,4 @@
-"""A copy of the process that works beside it: the same answers, and nothing left of it."""
+"""The forked worker: the same answers as in the process, and no process left behind."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def two_processors(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     yield
 
 
-def test_another_process_answers_one_question_after_the_other() -> None:
+def test_the_forked_worker_answers_one_question_after_the_other() -> None:
     beside = ForkedWorker(_who)
     answered = []
     for number in range(3):
@@ -35,7 +35,7 @@ def test_another_process_answers_one_question_after_the_other() -> None:
     assert len(pids) == 1 and os.getpid() not in pids
 
 
-def test_with_one_processor_the_answer_is_worked_out_here(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_answer_is_computed_locally_on_one_processor(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(room, "processors", lambda: range(1))
     beside = ForkedWorker(_who)
     beside.ask(4)
@@ -43,7 +43,7 @@ def test_with_one_processor_the_answer_is_worked_out_here(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("asked_before", [True, False])
-def test_if_it_dies_the_answer_is_worked_out_here(asked_before: bool) -> None:
+def test_the_answer_is_computed_locally_if_the_worker_dies(asked_before: bool) -> None:
     beside = ForkedWorker(_who)
     beside.ask(1)
     _, pid = beside.answer()
@@ -59,7 +59,7 @@ def test_if_it_dies_the_answer_is_worked_out_here(asked_before: bool) -> None:
     assert beside.answer() == (10, os.getpid())
 
 
-def test_an_answer_that_nobody_waited_for_is_nobodys() -> None:
+def test_an_unread_answer_is_dropped() -> None:
     beside = ForkedWorker(_who)
     for number in (1, 2, 3):
         beside.ask(number)
@@ -68,7 +68,7 @@ def test_an_answer_that_nobody_waited_for_is_nobodys() -> None:
     assert beside.answer()[0] == 8
 
 
-def test_closing_ends_it() -> None:
+def test_closing_ends_the_worker() -> None:
     beside = ForkedWorker(_who)
     beside.ask(1)
     _, pid = beside.answer()
@@ -90,7 +90,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
-def test_it_ends_with_the_process_however_that_ends() -> None:
+def test_the_worker_ends_with_its_parent_process() -> None:
     # Both hold the pipe that is read here: it closes when the last of them has ended.
     ended = subprocess.run(  # noqa: S603 - this interpreter and our own text
         [sys.executable, "-c", ENDS], stdout=subprocess.PIPE, timeout=60, check=False

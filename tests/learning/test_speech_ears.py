@@ -1,4 +1,4 @@
-"""Ears: what is said while they listen is heard, and nothing else, whatever happens meanwhile."""
+"""Ears: they decode exactly the speech that comes while they listen."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 
 
 class Room:
-    """Ears, somebody who speaks into them, and somebody who takes what they hear."""
+    """Ears, a speaker, and a consumer of the utterances."""
 
     def __init__(self, source: FakeSource, **options: object) -> None:
         self.source = source
@@ -102,7 +102,7 @@ async def enter(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Enter]:
 
 
 class TestPushToTalk:
-    async def test_what_is_said_between_two_pushes_is_heard(self, enter: Enter) -> None:
+    async def test_speech_between_two_pushes_is_decoded(self, enter: Enter) -> None:
         here = await enter().ready()
         await here.source.feed(sound("x"))
         here.ears.talk()
@@ -119,7 +119,7 @@ class TestPushToTalk:
         assert here.ears.sound == sound("c", 0.75)
         assert here.ears.words == ""
 
-    async def test_nothing_is_lost_of_what_comes_in_the_same_turn(self, enter: Enter) -> None:
+    async def test_sound_in_the_same_turn_of_the_loop_is_kept(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.talk()
         here.source.coming.put_nowait(sound("c"))
@@ -128,7 +128,7 @@ class TestPushToTalk:
         await here.ready()
         assert here.decoder.heard == [(sound("c", 1), "commands")]
 
-    async def test_it_ends_by_itself_where_no_more_sound_comes(
+    async def test_push_to_talk_ends_if_no_more_sound_comes(
         self, enter: Enter, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(room, "MOST_TALK", 0.01)
@@ -141,7 +141,7 @@ class TestPushToTalk:
         assert here.words == ["call number"]
         assert here.decoder.heard == [(sound("c"), "commands")]
 
-    async def test_a_push_too_early_is_answered(self, enter: Enter) -> None:
+    async def test_a_push_while_decoding_is_answered(self, enter: Enter) -> None:
         here = await enter().ready()
         here.decoder.decoding.clear()
         here.ears.talk()
@@ -167,7 +167,7 @@ class TestPushToTalk:
         assert here.words == ["call number"]
 
     @pytest.mark.parametrize("size", [0.02, 0.5, 1.7, 30])
-    async def test_it_ends_by_itself_after_six_seconds_of_sound(
+    async def test_push_to_talk_ends_after_six_seconds_of_sound(
         self, enter: Enter, size: float
     ) -> None:
         here = await enter().ready()
@@ -194,9 +194,7 @@ class TestPushToTalk:
         await here.ready()
         assert here.words == ["call number"]
 
-    async def test_sound_without_words_is_said_and_silence_of_the_source_is_not(
-        self, enter: Enter
-    ) -> None:
+    async def test_sound_without_words_is_reported(self, enter: Enter) -> None:
         here = await enter().ready()
         await here.say(sound("?"))
         assert here.told == [HearingNote("no words")]
@@ -211,16 +209,14 @@ class TestPushToTalk:
         await here.say(sound("c"))
         assert here.words == ["call number"]
 
-    async def test_late_words_do_not_change_what_is_shown(self, enter: Enter) -> None:
+    async def test_late_partial_words_do_not_change_the_state(self, enter: Enter) -> None:
         here = await enter().ready()
         here.decoder.speaking()
         assert here.state == "off"
 
 
 class TestShutting:
-    async def test_what_the_robot_says_is_not_heard_nor_the_room_after_it(
-        self, enter: Enter
-    ) -> None:
+    async def test_speech_of_the_robot_and_its_echo_are_not_decoded(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.shut()
         assert here.state == "shut"
@@ -231,7 +227,7 @@ class TestShutting:
         await here.say(sound("x", 0.1), sound("x", 0.2) + sound("c", 0.4))
         assert here.decoder.heard == [(sound("c", 0.4), "commands")]
 
-    async def test_what_was_being_said_is_dropped(self, enter: Enter) -> None:
+    async def test_muting_drops_the_current_utterance(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.talk()
         await here.source.feed(sound("c"))
@@ -242,7 +238,7 @@ class TestShutting:
         await here.say(sound("x", 0.3), sound("j"))
         assert here.words == ["tell a joke"]
 
-    async def test_what_is_being_decoded_is_dropped(self, enter: Enter) -> None:
+    async def test_muting_drops_the_utterance_being_decoded(self, enter: Enter) -> None:
         here = await enter().ready()
         here.decoder.decoding.clear()
         here.ears.talk()
@@ -255,7 +251,7 @@ class TestShutting:
         await here.ready()
         assert here.heard == []
 
-    async def test_pushed_and_shut_in_one_turn_nothing_listens_on(self, enter: Enter) -> None:
+    async def test_a_push_muted_in_the_same_turn_stops_listening(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.talk()
         here.ears.shut()
@@ -265,7 +261,7 @@ class TestShutting:
         assert here.decoder.heard == [(b"", "commands")]
         assert here.heard == []
 
-    async def test_a_recording_has_no_robot_in_it(self, enter: Enter) -> None:
+    async def test_muting_does_not_affect_a_recording(self, enter: Enter) -> None:
         here = enter(live=False)
         here.ears.shut()
         assert here.state == "starting"
@@ -277,7 +273,7 @@ class TestShutting:
 
 class TestOtherPhrases:
     @pytest.mark.parametrize("hands_free", [False, True])
-    async def test_are_listened_for_from_the_next_utterance_on(
+    async def test_new_phrases_apply_from_the_next_utterance(
         self, enter: Enter, hands_free: bool
     ) -> None:
         here = await enter(hands_free=hands_free).ready("listening" if hands_free else "off")
@@ -292,7 +288,7 @@ class TestOtherPhrases:
         await soon(lambda: "go to zoe" in here.listened_for)
         assert here.words == ["call number"]
 
-    async def test_what_is_said_meanwhile_is_not_lost(self, enter: Enter) -> None:
+    async def test_speech_during_a_change_of_phrases_is_kept(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         people = (*load_people(3), replace(load_people(4)[3], name="Zoe"))
         here.ears.asking(True)  # ends what is listened for, as a dialog does
@@ -303,7 +299,7 @@ class TestOtherPhrases:
             await here.source.feed(sound("c"), sound(" "))
         await soon(lambda: len(here.words) == 3)
 
-    async def test_the_same_phrases_disturb_nobody(self, enter: Enter) -> None:
+    async def test_unchanged_phrases_do_not_restart_the_decoder(self, enter: Enter) -> None:
         here = await enter().ready()
         before = here.decoder.wanted
         here.ears.understand_by(Phrasebook(load_activity("bingo"), load_people(4)))
@@ -312,12 +308,14 @@ class TestOtherPhrases:
 
 
 class TestRecording:
-    async def test_a_teacher_is_told_of_it(self, enter: Enter, tmp_path: Path) -> None:
+    async def test_the_teacher_is_notified_of_recording(self, enter: Enter, tmp_path: Path) -> None:
         here = await enter(recorder=Recorder(tmp_path, "rosa")).ready()
         assert here.ears.records
         assert here.told == [HearingNote("records")]
 
-    async def test_of_what_has_no_end_only_the_beginning_is_heard(self, enter: Enter) -> None:
+    async def test_only_the_beginning_of_an_endless_utterance_is_decoded(
+        self, enter: Enter
+    ) -> None:
         here = enter(live=False)
         await here.source.feed(sound("c", 20))
         here.source.end()
@@ -326,7 +324,7 @@ class TestRecording:
 
 
 class TestAsking:
-    async def test_answers_are_heard_if_that_is_switched_on(self, enter: Enter) -> None:
+    async def test_spoken_answers_count_if_switched_on(self, enter: Enter) -> None:
         here = await enter(answers=True).ready()
         here.ears.asking(True)
         for letter in "yncs":
@@ -337,7 +335,7 @@ class TestAsking:
         await here.say(sound("c"))
         assert here.words == ["stop", "call number"]
 
-    async def test_otherwise_only_what_stops(self, enter: Enter) -> None:
+    async def test_only_stops_count_if_answers_are_off(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.asking(True)
         for letter in "yncs":
@@ -345,7 +343,7 @@ class TestAsking:
         assert here.heard == [StopCommand("stop")]
 
     @pytest.mark.parametrize("asks", [True, False])
-    async def test_what_was_said_before_a_question_is_no_answer_to_it(
+    async def test_speech_from_before_a_question_is_no_answer(
         self, enter: Enter, asks: bool
     ) -> None:
         here = await enter(answers=True).ready()
@@ -358,7 +356,7 @@ class TestAsking:
         await here.say(sound("s"))
         assert here.words == ["stop"]
 
-    async def test_words_that_a_question_overtook_are_said_to_count_for_nothing(
+    async def test_a_command_overtaken_by_a_question_is_reported_as_dropped(
         self, enter: Enter
     ) -> None:
         here = await enter().ready()
@@ -369,7 +367,7 @@ class TestAsking:
         assert here.heard == []
         assert here.told == [HearingNote("question between", "call number")]
 
-    async def test_what_is_no_answer_is_said_to_be_none(self, enter: Enter) -> None:
+    async def test_speech_that_is_no_answer_is_reported(self, enter: Enter) -> None:
         here = await enter(answers=True).ready()
         here.ears.asking(True)
         await here.say(sound("c"))
@@ -377,7 +375,9 @@ class TestAsking:
         assert here.told == [HearingNote("no answer")]
 
     @pytest.mark.parametrize("between", ["a question", "the robot speaks"])
-    async def test_a_stop_counts_whatever_came_between(self, enter: Enter, between: str) -> None:
+    async def test_a_stop_counts_despite_a_question_or_muting(
+        self, enter: Enter, between: str
+    ) -> None:
         here = await enter(answers=True).ready()
         here.ears.talk()
         await here.source.feed(sound("s"))
@@ -388,7 +388,7 @@ class TestAsking:
         await soon(lambda: bool(here.heard))
         assert here.heard == [StopCommand("stop")]
 
-    async def test_whoever_opens_the_microphone_opens_no_others(self, enter: Enter) -> None:
+    async def test_each_mute_needs_its_own_unmute(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.shut()
         here.ears.shut()
@@ -397,14 +397,14 @@ class TestAsking:
         here.ears.open()
         assert here.state != "shut"
 
-    async def test_a_stop_is_heard_whatever_is_asked(self, enter: Enter) -> None:
+    async def test_a_stop_is_heard_at_any_time(self, enter: Enter) -> None:
         here = await enter().ready()
         await here.say(sound("s"))
         assert here.heard == [StopCommand("stop")]
 
 
 class TestTheEnd:
-    async def test_a_source_that_ends_in_mid_talk_loses_nothing(self, enter: Enter) -> None:
+    async def test_a_source_that_ends_during_speech_loses_nothing(self, enter: Enter) -> None:
         here = await enter().ready()
         here.ears.talk()
         await here.source.feed(sound("c"))
@@ -414,7 +414,7 @@ class TestTheEnd:
         assert here.told == [HearingNote("microphone closed")]
 
     @pytest.mark.parametrize("talks", [True, False])
-    async def test_a_source_that_breaks_says_so_after_what_was_said(
+    async def test_a_failing_source_raises_after_the_last_utterance(
         self, enter: Enter, talks: bool
     ) -> None:
         here = await enter().ready()
@@ -429,7 +429,9 @@ class TestTheEnd:
 
     @pytest.mark.parametrize("hands_free", [True, False])
     @pytest.mark.parametrize("moment", ["new", "starting", "waiting", "speaking", "thinking"])
-    async def test_closing_at_any_moment(self, enter: Enter, moment: str, hands_free: bool) -> None:
+    async def test_the_ears_can_be_closed_at_any_moment(
+        self, enter: Enter, moment: str, hands_free: bool
+    ) -> None:
         here = enter(hands_free=hands_free)
         if moment != "new":
             await soon(lambda: bool(FakeRecogniser.made))
@@ -446,7 +448,7 @@ class TestTheEnd:
         await here.over()
         assert (here.heard, here.told) == ([], [])
 
-    async def test_closing_while_somebody_looks_at_what_was_heard(self, enter: Enter) -> None:
+    async def test_the_ears_can_be_closed_while_an_utterance_is_handled(self, enter: Enter) -> None:
         here = await enter().ready()
         here.taking.cancel()
         await asyncio.wait({here.taking})
@@ -463,7 +465,7 @@ class TestTheEnd:
         with pytest.raises(StopAsyncIteration):
             await anext(later.ears)
 
-    async def test_closed_ears_never_begin(self, enter: Enter) -> None:
+    async def test_closed_ears_never_start(self, enter: Enter) -> None:
         here = enter()
         here.taking.cancel()
         await here.ears.close()
@@ -472,7 +474,7 @@ class TestTheEnd:
             await anext(here.ears)
         assert FakeRecogniser.made == []
 
-    async def test_an_observer_that_breaks_leaves_nothing_running(self, enter: Enter) -> None:
+    async def test_a_failing_observer_leaves_nothing_running(self, enter: Enter) -> None:
         here = await enter().ready()
 
         def gone() -> None:
@@ -498,7 +500,7 @@ class TestHandsFree:
         assert "speaking" in here.states
 
     @pytest.mark.parametrize("end", [True, False])
-    async def test_a_stream_that_is_faster_than_the_decoder_is_heard_whole(
+    async def test_a_stream_faster_than_the_decoder_is_decoded_completely(
         self, enter: Enter, end: bool
     ) -> None:
         here = await enter(hands_free=True).ready("listening")
@@ -534,12 +536,12 @@ class TestHandsFree:
         await soon(lambda: bool(here.heard))
         assert here.words == ["tell a joke"]
 
-    async def test_a_key_is_not_needed(self, enter: Enter) -> None:
+    async def test_hands_free_mode_ignores_the_talk_key(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.ears.talk()
         assert here.state == "listening"
 
-    async def test_a_decoder_that_is_of_no_use_is_given_up(self, enter: Enter) -> None:
+    async def test_a_decoder_that_keeps_failing_is_abandoned(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.decoder.failures += [SpeechUnavailable("It died.")] * 9
         for _ in range(room.FAILURES):
@@ -550,7 +552,7 @@ class TestHandsFree:
         assert here.told == [HearingNote("not decoded", "It died.")] * (room.FAILURES - 1)
 
     @pytest.mark.slow
-    async def test_a_stream_that_nobody_takes_does_not_grow_for_ever(self, enter: Enter) -> None:
+    async def test_an_undecoded_stream_is_bounded(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.decoder.decoding.clear()
         await here.source.feed(sound("c") + sound(" "))
@@ -562,7 +564,7 @@ class TestHandsFree:
 
 
 class TestStalls:
-    def test_what_comes_after_a_stall_continues_nothing(self) -> None:
+    def test_sound_after_a_stall_starts_a_new_utterance(self) -> None:
         utterance = Utterance(found=True)
         utterance.add(sound("a", 0.1), 1.0)
         utterance.add(sound("b", 0.1), 1.0 + STALLED)
@@ -570,7 +572,7 @@ class TestStalls:
         utterance.add(sound("c", 0.1), 1.1 + 2 * STALLED)
         assert utterance.rest() == QUIET + sound("c", 0.1)
 
-    def test_a_key_that_is_pushed_keeps_together_what_was_said(self) -> None:
+    def test_push_to_talk_joins_sound_across_a_stall(self) -> None:
         utterance = Utterance(found=False)
         utterance.add(sound("a", 0.1), 1.0)
         utterance.add(sound("b", 0.1), 2.0 + STALLED)
@@ -578,7 +580,9 @@ class TestStalls:
 
 
 class TestRecordings:
-    async def test_each_utterance_is_heard_and_the_end_is_said(self, enter: Enter) -> None:
+    async def test_each_utterance_of_a_recording_is_decoded_and_its_end_reported(
+        self, enter: Enter
+    ) -> None:
         here = enter(live=False)
         await here.source.feed(sound("c") + sound(" ") + sound("j") + sound(" ") + sound("s"))
         here.source.end()

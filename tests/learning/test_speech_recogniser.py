@@ -1,4 +1,4 @@
-"""The recogniser and its worker's process: nothing is lost when one dies, and nobody waits."""
+"""The recogniser and its worker processes: nothing is lost if a worker dies or hangs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ WHOLE = b"".join(CHUNKS)
 
 
 class Heard:
-    """A recogniser with workers of the test's own, and all that it said of them."""
+    """A recogniser with scripted workers, and its reports."""
 
     def __init__(self, folder: Path) -> None:
         self.told: list[str] = []
@@ -84,7 +84,7 @@ async def begin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncIterato
 
 
 class TestHearing:
-    async def test_words_come_while_somebody_speaks(self, begin: Begin) -> None:
+    async def test_partial_words_arrive_during_speech(self, begin: Begin) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         hearing = asyncio.create_task(heard.hear())
@@ -98,7 +98,7 @@ class TestHearing:
         assert heard.recogniser.said == WHOLE
         assert (heard.workers.heard, heard.told) == ([WHOLE], [])
 
-    async def test_one_utterance_after_the_other(self, begin: Begin) -> None:
+    async def test_utterances_are_decoded_one_after_the_other(self, begin: Begin) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         for chunk in CHUNKS:
@@ -106,7 +106,9 @@ class TestHearing:
             await heard.hear()
             assert heard.workers.heard == [chunk]
 
-    async def test_what_comes_after_the_end_of_an_utterance_is_left(self, begin: Begin) -> None:
+    async def test_sound_after_an_endpoint_is_left_for_the_next_utterance(
+        self, begin: Begin
+    ) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         heard.say(b"one.", b"two.three.", b"fo")
@@ -126,7 +128,7 @@ class TestHearing:
         assert len(heard.recogniser.said) <= 2 * RATE * (LONGEST + room.BEHIND)
         assert heard.recogniser.said.endswith(b"A.")
 
-    async def test_of_what_is_too_long_the_beginning_is_heard(self, begin: Begin) -> None:
+    async def test_an_overlong_utterance_is_cut_to_its_beginning(self, begin: Begin) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         assert (await heard.recogniser.decode(bytes(2 * RATE * (LONGEST + 5)))).seconds == LONGEST
@@ -134,9 +136,7 @@ class TestHearing:
         assert (await heard.hear()).seconds == LONGEST
         assert heard.workers.heard == [b"A" * 2 * RATE * LONGEST]
 
-    async def test_an_utterance_nobody_waits_for_does_not_answer_the_next(
-        self, begin: Begin
-    ) -> None:
+    async def test_a_cancelled_utterance_does_not_answer_the_next(self, begin: Begin) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         given_up = asyncio.create_task(heard.hear())
@@ -148,13 +148,13 @@ class TestHearing:
         assert (await heard.hear()).seconds == 320 / RATE
         assert (heard.workers.heard, heard.told) == ([CHUNKS[4]], [])
 
-    async def test_several_who_ask_at_once_are_heard_in_turn(self, begin: Begin) -> None:
+    async def test_concurrent_requests_are_decoded_in_turn(self, begin: Begin) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         found = await asyncio.gather(*(heard.recogniser.decode(WHOLE[: 2 * n]) for n in (9, 5, 7)))
         assert [evidence.seconds for evidence in found] == [9 / RATE, 5 / RATE, 7 / RATE]
 
-    async def test_pieces_of_a_recording(self, begin: Begin) -> None:
+    async def test_a_recording_is_split_into_pieces(self, begin: Begin) -> None:
         many = [[0.001 * number, 0.001 * number + 0.01] for number in range(6_000)]
         heard = begin({"found": many})
         await heard.recogniser.start(WANTED)
@@ -163,7 +163,7 @@ class TestHearing:
         assert len(found) == 6_000
         assert {len(piece) for piece in found} == {320}
 
-    async def test_words_nobody_can_pronounce_are_known(self, begin: Begin) -> None:
+    async def test_words_without_pronunciation_are_reported(self, begin: Begin) -> None:
         heard = begin({"left_out": ["xhqzr"]})
         await heard.recogniser.start(WANTED)
         assert heard.recogniser.left_out == ("xhqzr",)
@@ -192,7 +192,7 @@ class TestDeath:
         assert "\n" not in how
 
     @pytest.mark.parametrize("how", ["die", "x" * 100 + "\n", "flood"])
-    async def test_a_worker_that_dies_over_the_end_is_asked_again(
+    async def test_a_worker_that_dies_at_the_end_is_replaced_and_asked_again(
         self, begin: Begin, how: str
     ) -> None:
         heard = begin({"end": how}, {})
@@ -201,7 +201,7 @@ class TestDeath:
         assert (await heard.hear()).words == "call number"
         assert heard.workers.heard == [WHOLE, WHOLE]
 
-    async def test_an_utterance_that_kills_two_workers_is_given_up(self, begin: Begin) -> None:
+    async def test_an_utterance_that_kills_two_workers_is_abandoned(self, begin: Begin) -> None:
         heard = begin({"end": "die"}, {"end": "die"}, {})
         await heard.recogniser.start(WANTED)
         heard.say(*CHUNKS, b"")
@@ -212,7 +212,9 @@ class TestDeath:
         assert (await heard.hear()).words == "call number"
         assert heard.workers.heard == [WHOLE, WHOLE, CHUNKS[0]]
 
-    async def test_a_death_between_utterances_is_told_and_mended(self, begin: Begin) -> None:
+    async def test_a_worker_that_dies_between_utterances_is_reported_and_replaced(
+        self, begin: Begin
+    ) -> None:
         heard = begin()
         await heard.recogniser.start(WANTED)
         assert heard.recogniser.pid is not None
@@ -221,7 +223,7 @@ class TestDeath:
         assert (await heard.hear()).words == "call number"
         assert len(heard.told) == 1
 
-    async def test_a_worker_that_cannot_begin_is_an_error(self, begin: Begin) -> None:
+    async def test_a_worker_that_cannot_start_is_an_error(self, begin: Begin) -> None:
         heard = begin({"start": "exit"})
         with pytest.raises(SpeechUnavailable, match="status 3"):
             await heard.recogniser.start(WANTED)
@@ -229,7 +231,7 @@ class TestDeath:
         with pytest.raises(SpeechUnavailable, match="status 3"):
             await heard.hear()
 
-    async def test_a_program_that_is_not_there_is_an_error(
+    async def test_a_missing_worker_program_is_an_error(
         self, begin: Begin, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     ) -> None:
         heard = begin()
@@ -237,7 +239,7 @@ class TestDeath:
         with pytest.raises(SpeechUnavailable, match="No such file"):
             await heard.recogniser.start(WANTED)
 
-    async def test_an_utterance_over_which_a_worker_hangs_is_decoded_again(
+    async def test_an_utterance_is_decoded_again_if_its_worker_hangs(
         self, begin: Begin, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(room, "STALLED_SECONDS", 0.05)
@@ -247,7 +249,7 @@ class TestDeath:
         assert (await heard.hear()).words == "call number"
         assert heard.workers.heard[1] == b"".join(CHUNKS)
 
-    async def test_a_worker_that_hangs_twice_over_an_utterance_gives_it_up(
+    async def test_an_utterance_that_hangs_two_workers_is_abandoned(
         self, begin: Begin, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(room, "STALLED_SECONDS", 0.05)
@@ -259,7 +261,7 @@ class TestDeath:
         heard.say(CHUNKS[0], b"")
         assert (await heard.hear()).words == "call number"
 
-    async def test_a_worker_that_takes_nothing_more_loses_nothing(
+    async def test_a_worker_that_stops_reading_loses_nothing(
         self, begin: Begin, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(room, "DECODE_SECONDS", 0.2)
@@ -271,7 +273,7 @@ class TestDeath:
         assert heard.workers.heard[1] == b"".join(chunks)
         assert "signal 9" in heard.told[0]
 
-    async def test_what_cannot_be_shown_is_an_error_and_the_next_is_heard(
+    async def test_a_failing_display_of_partial_words_does_not_block_the_next_utterance(
         self, begin: Begin
     ) -> None:
         heard = begin()
@@ -291,7 +293,7 @@ class TestDeath:
         assert heard.told == []
 
 
-async def test_what_workers_have_said_is_kept_up_to_a_bound(begin: Begin, tmp_path: Path) -> None:
+async def test_the_log_of_the_workers_is_bounded(begin: Begin, tmp_path: Path) -> None:
     log = tmp_path / "speech.log"
     log.write_bytes(b"an old line\n" * (MOST // 6))
     begin()
@@ -316,7 +318,9 @@ class TestClosing:
         assert heard.told == []
 
     @pytest.mark.parametrize("plan", [{}, {"chunk 2": "hang"}, {"end": "hang"}])
-    async def test_closing_waits_for_no_utterance(self, begin: Begin, plan: dict[str, Any]) -> None:
+    async def test_closing_does_not_wait_for_an_utterance(
+        self, begin: Begin, plan: dict[str, Any]
+    ) -> None:
         heard = begin(plan)
         await heard.recogniser.start(WANTED)
         hearing = asyncio.create_task(heard.hear())
@@ -331,7 +335,7 @@ class TestClosing:
             os.kill(pid, 0)
         assert (len(heard.workers.heard), heard.told) == (1, [])
 
-    async def test_closing_in_the_middle_of_the_start(self, begin: Begin) -> None:
+    async def test_the_recogniser_can_be_closed_during_its_start(self, begin: Begin) -> None:
         for moment in ("start", "wanted"):
             heard = begin({moment: "hang"})
             starting = asyncio.create_task(heard.recogniser.start(WANTED))
@@ -355,7 +359,7 @@ def _runs(recogniser: Recogniser) -> bool:
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
-async def test_what_a_process_has_others_do_counts_as_its_work() -> None:
+async def test_the_cpu_time_of_a_process_includes_its_children() -> None:
     busy = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-c", busy, start_new_session=True

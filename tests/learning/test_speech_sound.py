@@ -1,4 +1,4 @@
-"""Sound before it is decoded: steady noise is turned down, and utterances are found."""
+"""Sound before decoding: noise reduction and endpoint detection."""
 
 from __future__ import annotations
 
@@ -37,13 +37,15 @@ def among_quiet(*lengths: float) -> bytes:
 
 class TestCleaning:
     @given(st.integers(0, 9_000), st.floats(0, 0.3), st.integers(0, 9))
-    def test_it_keeps_the_length_and_adds_nothing(self, count: int, loud: float, seed: int) -> None:
+    def test_cleaning_keeps_the_length_and_adds_no_energy(
+        self, count: int, loud: float, seed: int
+    ) -> None:
         sound = pcm(np.clip(hiss(count / RATE, loud, seed), -1, 1))
         found = cleaned(sound)
         assert len(found) == len(sound)
         assert energy(found) <= 1.01 * energy(sound) + 1
 
-    def test_noise_goes_down_and_the_voice_stays(self) -> None:
+    def test_cleaning_reduces_noise_and_keeps_the_voice(self) -> None:
         voice = np.concatenate([np.zeros(RATE), buzz(1.0), np.zeros(RATE)])
         noise = hiss(3.0, 0.02)
         found = cleaned(pcm(np.clip(voice + noise, -1, 1)))
@@ -52,14 +54,14 @@ class TestCleaning:
         assert energy(found[middle]) == pytest.approx(energy(pcm(voice)[middle]), rel=0.15)
 
     @pytest.mark.parametrize("seconds", [0.0, 0.05, 3.0])
-    def test_what_is_clean_or_short_is_left_as_it_is(self, seconds: float) -> None:
+    def test_clean_or_short_sound_is_unchanged(self, seconds: float) -> None:
         sound = among_quiet(seconds) if seconds > 1 else pcm(buzz(seconds))
         assert cleaned(sound) == sound
 
 
 class TestEndpoints:
     @pytest.mark.parametrize("size", [2, 640, 961, 3_200, 1 << 20])
-    def test_an_utterance_is_found_whatever_pieces_it_comes_in(self, size: int) -> None:
+    def test_an_utterance_is_found_in_chunks_of_any_size(self, size: int) -> None:
         stream = among_quiet(1.0)
         endpoints = Endpoints()
         marks = [
@@ -106,12 +108,12 @@ class TestEndpoints:
         expected = [(1.5 - MARGIN, 2.3 + MARGIN), (3.8 - MARGIN, 5.0 + MARGIN)]
         assert np.ravel(found) == pytest.approx(np.ravel(expected), abs=0.25)
 
-    def test_a_long_recording_is_no_trouble(self) -> None:
+    def test_a_long_recording_is_split(self) -> None:
         found = pieces(among_quiet(1.0) * 60)  # 4 minutes; once the square of its length
         assert len(found) == 60
 
     @pytest.mark.parametrize("sound", [b"", b"\0", bytes(640), bytes(8 * RATE)])
-    def test_there_is_nothing_in_silence(self, sound: bytes) -> None:
+    def test_silence_has_no_pieces(self, sound: bytes) -> None:
         assert pieces(sound) == []
 
 

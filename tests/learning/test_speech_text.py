@@ -1,4 +1,4 @@
-"""Speech as text: what is listened for, what the decoder's process answers, and what words mean."""
+"""Speech as text: the vocabulary, the answers of the decoder process, and their meaning."""
 
 from __future__ import annotations
 
@@ -77,9 +77,7 @@ def evidence(words: str, confidence: float = 1.0, margin: float = 0.0) -> Acoust
 
 class TestLanguage:
     @given(st.dictionaries(WORD, st.lists(ALL_PHONES, min_size=1, max_size=3)), st.booleans())
-    def test_a_dictionary_says_how_every_word_is_said(
-        self, said: dict[str, list[str]], phones: bool
-    ) -> None:
+    def test_the_dictionary_has_every_word(self, said: dict[str, list[str]], phones: bool) -> None:
         found: dict[str, list[str]] = {}
         for line in dictionary(said, phones=phones).splitlines():
             word, _, ways = line.partition(" ")
@@ -89,7 +87,7 @@ class TestLanguage:
         assert len(found) - len(own) == (len(PHONES) if phones else 0)
 
     @given(PHRASES, st.floats(1e-6, 100))
-    def test_a_grammar_has_the_phrases_and_weighs_the_branch_of_all_else(
+    def test_the_grammar_has_the_phrases_and_a_weighted_garbage_branch(
         self, phrases: list[str], weight: float
     ) -> None:
         rules = dict(re.findall(r"<(\w+)> = (.*?);", grammar(phrases, weight), re.DOTALL))
@@ -101,7 +99,7 @@ class TestLanguage:
         assert len(rules["phone"].split("|")) == len(PHONES)
 
     @given(PHRASES, st.dictionaries(WORD, PROBABILITIES, min_size=1, max_size=9), st.floats(0, 0.9))
-    def test_the_open_model_counts_what_it_has_and_gives_away_no_more_than_all(
+    def test_the_open_language_model_is_normalised(
         self, phrases: list[str], everyday: dict[str, float], share: float
     ) -> None:
         model = open_model(phrases, everyday, share)
@@ -123,7 +121,7 @@ class TestLanguage:
         assert found[3] == plain[3]
         assert model.endswith("\\end\\\n")
 
-    def test_what_is_wanted_is_every_phrase_what_stops_what_steers_and_answers(self) -> None:
+    def test_the_vocabulary_has_phrases_stops_steering_words_and_answers(self) -> None:
         found = wanted(BOOK, USUAL)
         teaching = steering_texts(WHILE_TEACHING)
         assert found.phrases == (*BOOK.spoken(), *STOPS, *teaching)
@@ -145,10 +143,10 @@ class TestLanguage:
             ),
         )
     )
-    def test_what_is_wanted_goes_to_the_worker_and_back(self, one: DecoderVocabulary) -> None:
+    def test_the_vocabulary_is_encoded_and_decoded_unchanged(self, one: DecoderVocabulary) -> None:
         assert decode(DecoderVocabulary, json.loads(json.dumps(encode(one)))) == one
 
-    def test_nothing_heavy_is_imported_with_these_rooms(self) -> None:
+    def test_importing_the_speech_modules_loads_no_heavy_package(self) -> None:
         code = (
             "import sys, tangy_tui.language.commands, tangy_tui.speech.input\n"
             "import tangy_tui.speech.transcription, tangy_tui.speech.worker\n"
@@ -194,14 +192,14 @@ class TestUnderstanding:
             ("we have a problem", "", -0.8, None),
         ],
     )
-    def test_words_are_taken_for_the_phrase_that_they_sound_like(
+    def test_words_are_replaced_by_a_similar_sounding_phrase(
         self, words: str, phrase: str, margin: float, meant: str | None
     ) -> None:
         found = best_words(AcousticEvidence(words, phrase, margin, 1.0, 1.0), BOOK)
         assert found[0] == (meant or words)
 
     @given(SAID, st.floats(-3, 0), st.floats(-3, 3))
-    def test_the_tiers_are_told_apart_by_the_confidence_alone(
+    def test_the_confidence_alone_determines_the_tier(
         self, words: str, margin: float, shift: float
     ) -> None:
         said = understand(evidence(words, margin=margin), BOOK, replace(USUAL, shift=shift))
@@ -219,7 +217,7 @@ class TestUnderstanding:
             assert said.confidence < UNSURE
 
     @given(SAID, st.floats(-3, 0), st.floats(-2, 2), st.floats(0, 2))
-    def test_a_stricter_microphone_is_never_surer(
+    def test_a_stricter_threshold_never_raises_the_confidence(
         self, words: str, margin: float, shift: float, more: float
     ) -> None:
         one, other = (
@@ -232,13 +230,13 @@ class TestUnderstanding:
         assert len(other.commands or ()) <= len(one.commands or ())
         assert one.sure or not other.sure or not other.commands
 
-    def test_the_strictest_microphone_takes_nothing_for_a_command(self) -> None:
+    def test_the_strictest_threshold_accepts_no_command(self) -> None:
         said = understand(evidence("call the next number"), BOOK, replace(USUAL, shift=50.0))
         assert isinstance(said, Say)
         assert said.commands == ()
 
     @given(st.floats(0, 1), st.floats(0, 1), st.integers(0, 9), st.integers(0, 9), st.floats(-5, 5))
-    def test_the_likelihood_grows_with_what_speaks_for_it(
+    def test_the_likelihood_is_monotonic(
         self, less: float, more: float, few: int, many: int, margin: float
     ) -> None:
         less, more, few, many = min(less, more), max(less, more), min(few, many), max(few, many)
@@ -251,12 +249,12 @@ class TestUnderstanding:
         ("words", "user"),
         [("go to user to", "user2"), ("go to user for", "user4"), ("help user won", "user1")],
     )
-    def test_a_number_is_one_however_it_is_spelt(self, words: str, user: str) -> None:
+    def test_a_number_is_understood_in_any_spelling(self, words: str, user: str) -> None:
         said = understand(evidence(words), BOOK, USUAL)
         assert isinstance(said, Say) and said.commands and said.sure
         assert dict(said.commands[0].arguments) == {"user": user}
 
-    def test_other_speech_and_silence_are_nothing(self) -> None:
+    def test_other_speech_and_silence_are_no_command(self) -> None:
         for words in ("", "the soup was too salty", "the to a", "my sister lives in canada"):
             said = understand(evidence(words, margin=-0.5), BOOK, USUAL)
             assert isinstance(said, Say)
@@ -270,7 +268,7 @@ class TestUnderstanding:
             *("stop what you are doing", "you must stop", "stop where you are", "stop people"),
         ],
     )
-    def test_what_stops_the_robot_does_so_in_every_mode(
+    def test_a_stop_is_understood_in_every_mode(
         self, words: str, settings: EvidenceSettings
     ) -> None:
         found = understand(AcousticEvidence(words, "", -9.0, 0.0, 0.3), BOOK, settings)
@@ -285,7 +283,7 @@ class TestUnderstanding:
             *("stop the music please", "stop now the music", "he said that they stop here"),
         ],
     )
-    def test_what_only_mentions_stopping_does_not(self, words: str) -> None:
+    def test_a_mention_of_stopping_is_no_stop(self, words: str) -> None:
         assert not stops(words)
 
     @pytest.mark.parametrize(
@@ -302,12 +300,12 @@ class TestUnderstanding:
             ("", None),
         ],
     )
-    def test_an_answer_is_one_of_a_few_words(self, words: str, meant: Reply | None) -> None:
+    def test_yes_and_no_phrases_are_answers(self, words: str, meant: Reply | None) -> None:
         sure = replace(evidence(words), phrase=words, margin=-0.4)
         assert answer(sure, USUAL) == meant
 
     @pytest.mark.parametrize("words", ["yes", "no"])
-    def test_what_only_sounds_like_an_answer_is_none(self, words: str) -> None:
+    def test_words_that_only_sound_like_an_answer_are_none(self, words: str) -> None:
         sure = replace(evidence(words), phrase=words, margin=-0.4)
         assert answer(replace(sure, phrase=""), USUAL) is not None
         assert answer(replace(sure, phrase="", margin=-0.7), USUAL) is None  # any phones fit better
@@ -317,7 +315,7 @@ class TestUnderstanding:
         assert answer(sure, replace(USUAL, shift=1.0)) is None
         assert answer(sure, PAPER) is None
 
-    def test_the_papers_confidence_is_that_of_the_sound_and_of_the_match(self) -> None:
+    def test_the_confidence_of_the_paper_combines_sound_and_match(self) -> None:
         exact = understand(evidence("go to the front", 0.9), BOOK, PAPER)
         keyword = understand(evidence("front", 0.9), BOOK, PAPER)
         assert isinstance(exact, Say)
@@ -328,9 +326,7 @@ class TestUnderstanding:
         assert [c.confidence for c in exact.commands or ()] == [0.9]
 
     @given(SAID, st.floats(0, 1), st.floats(0, 1))
-    def test_the_papers_mode_has_one_tier_and_grows_with_the_confidence(
-        self, words: str, less: float, more: float
-    ) -> None:
+    def test_the_paper_mode_has_one_tier(self, words: str, less: float, more: float) -> None:
         less, more = min(less, more), max(less, more)
         one, other = (understand(evidence(words, c), BOOK, PAPER) for c in (less, more))
         assert isinstance(one, Say)
@@ -344,7 +340,7 @@ class TestUnderstanding:
 
 
 class LetterDecoder:
-    """Says each letter of the sound once, in the order in which they come."""
+    """A decoder whose words are the letters of the sound, each once and in order."""
 
     left_out = ("xhqzr",)
 
@@ -406,14 +402,14 @@ class TestWorker:
         "request_",
         [None, [], 7, {}, {"id": 1}, {"wanted": [1]}, {"begin": "songs"}, {"pcm": 1}, {"end": 1}],
     )
-    def test_odd_requests_are_answered_with_an_error(self, ask: Ask, request_: object) -> None:
+    def test_invalid_requests_are_answered_with_an_error(self, ask: Ask, request_: object) -> None:
         (answer_,) = ask(request_)
         assert "must hold" in answer_["error"]
 
     @pytest.mark.parametrize(
         "odd", [{}, {"phrases": 1}, {"phrases": ["a"], "settings": {"loud": 1}}]
     )
-    def test_what_is_wanted_must_be_readable(self, ask: Ask, odd: object) -> None:
+    def test_an_unreadable_vocabulary_is_an_error(self, ask: Ask, odd: object) -> None:
         (answer_,) = ask({"id": 1, "wanted": odd})
         assert "cannot be read" in answer_["error"]
 
@@ -423,7 +419,7 @@ class TestWorker:
         assert answers[0]["id"] == 7
         assert "phrases must come before" in answers[0]["error"]
 
-    def test_words_are_told_when_they_change_and_the_evidence_at_the_end(self, ask: Ask) -> None:
+    def test_partial_words_are_sent_on_change_and_the_evidence_at_the_end(self, ask: Ask) -> None:
         parts = [sound(letter, 0.1) for letter in "aab"]
         answers = ask(BEGIN, *map(said, parts), END)
         assert [a["partial"] for a in answers[:-1]] == ["a", "a b"]
@@ -431,22 +427,22 @@ class TestWorker:
         assert answers[-1]["used"] == len(b"".join(parts))
         assert {a["id"] for a in answers} == {7}
 
-    def test_large_pieces_are_heard_but_not_shown(self, ask: Ask) -> None:
+    def test_large_chunks_give_no_partial_words(self, ask: Ask) -> None:
         answers = ask(BEGIN, said(sound("a", 2 * LARGEST_PIECE)), END)
         assert [sorted(a) for a in answers] == [["heard", "id", "used"]]
 
-    def test_urgent_words_end_an_utterance_when_they_stand_alone(self, ask: Ask) -> None:
+    def test_urgent_words_alone_end_an_utterance(self, ask: Ask) -> None:
         parts = [said(sound("s", STANDS / 3))] * 6
         answers = ask(BEGIN, *parts, END)
         assert [a for a in answers if "heard" in a] == answers[-1:]
         assert answers[-1]["heard"]["seconds"] == pytest.approx(STANDS / 3 * 4, abs=0.001)
 
-    def test_urgent_words_within_others_do_not(self, ask: Ask) -> None:
+    def test_urgent_words_within_a_sentence_do_not_end_it(self, ask: Ask) -> None:
         parts = [said(sound(letter, STANDS / 2)) for letter in "ssaaaass"]
         answers = ask(BEGIN, *parts, END)
         assert answers[-1]["heard"]["seconds"] == pytest.approx(4 * STANDS, abs=0.001)
 
-    def test_what_is_too_long_is_not_kept(self, ask: Ask) -> None:
+    def test_an_overlong_utterance_is_cut(self, ask: Ask) -> None:
         answers = ask(BEGIN, *[said(sound("a", 1))] * (LONGEST + 3), END)
         assert answers[-1]["heard"]["seconds"] == LONGEST
 
@@ -457,9 +453,7 @@ class TestWorker:
         assert ask(END, said(sound("a", 0.1))) == []
 
     @pytest.mark.parametrize("broken", ["partial", "decode"])
-    def test_a_decoder_that_fails_is_told_to_whoever_waits_and_the_next_is_heard(
-        self, ask: Ask, broken: str
-    ) -> None:
+    def test_a_decoder_error_is_sent_to_its_request_only(self, ask: Ask, broken: str) -> None:
         answers = ask(BEGIN, said(sound("a", 0.1)), END, broken=broken)
         errors = [a for a in answers if "error" in a]
         assert [a["id"] for a in errors] == [7]
@@ -467,7 +461,7 @@ class TestWorker:
         assert ask(BEGIN, said(sound("a", 0.1)), END)[-1]["heard"]["words"] == "a"
 
     @pytest.mark.parametrize("pcm", [b"", b"\0", bytes(2 * RATE), sound("a"), b"\1\0\0\0" * RATE])
-    def test_there_are_no_words_in_silence(
+    def test_silence_has_no_words(
         self, ask: Ask, pcm: bytes, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(room, "SILENCE", 8)
@@ -475,7 +469,7 @@ class TestWorker:
         assert (found["words"], found["confidence"]) == ("", 0.0)
         assert found["seconds"] == pytest.approx(len(pcm) // 2 / RATE)
 
-    def test_sound_that_is_none_is_told_to_whoever_waits(self, ask: Ask) -> None:
+    def test_invalid_sound_is_an_error_of_its_request(self, ask: Ask) -> None:
         (answer_,) = ask(BEGIN, {"pcm": "not base64!"}, END)
         assert answer_ == {"id": 7, "error": "The sound is not base64."}
 
@@ -500,7 +494,7 @@ class TestListening:
         json.dumps(rows)
         assert FakeRecogniser.made[0].closed
 
-    def test_files_are_read_one_by_one_and_each_is_told_when_it_was_heard(
+    def test_files_are_read_and_reported_one_by_one(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         happened: list[str] = []
@@ -520,19 +514,19 @@ class TestListening:
         )
         assert happened == ["read c", "1: call number", "read j", "2: joke"]
 
-    def test_a_file_that_is_no_command_is_cut_at_its_pauses(self, tmp_path: Path) -> None:
+    def test_a_long_file_is_split_at_its_pauses(self, tmp_path: Path) -> None:
         file = tmp_path / "two.wav"
         file.write_bytes(wav(sound("c") + sound(" ", 1) + sound("j")))
         rows = transcription.listen([file], BOOK)
         assert [row["behaviour"] for row in rows] == ["call number", "joke"]
 
-    def test_what_comes_after_the_longest_utterance_is_heard_too(self, tmp_path: Path) -> None:
+    def test_sound_after_the_longest_utterance_is_decoded_too(self, tmp_path: Path) -> None:
         file = tmp_path / "long.wav"
         file.write_bytes(wav(sound("c", LONGEST) + sound(" ", 0.5) + sound("j")))
         rows = transcription.listen([file], BOOK)
         assert [row["behaviour"] for row in rows] == ["call number", "joke"]
 
-    def test_no_files_are_no_rows(self) -> None:
+    def test_no_files_give_no_rows(self) -> None:
         assert transcription.listen([], BOOK) == []
         assert FakeRecogniser.made == []
 

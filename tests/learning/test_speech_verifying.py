@@ -1,4 +1,4 @@
-"""Spoken commands at the door: offered, asked about, answered; and in a session by lines."""
+"""Verifying spoken commands: offers, questions and answers; and a session by lines."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def door() -> Verifier:
 
 
 class TestTheDoor:
-    def test_unsure_words_are_offered_and_nothing_is_asked_yet(self, door: Verifier) -> None:
+    def test_uncertain_words_are_offered_before_a_question(self, door: Verifier) -> None:
         offered = door.say(UNSURE)
         question = ACTIVITY.behaviour("navigate to user").question
         assert offered == door.question
@@ -67,7 +67,7 @@ class TestTheDoor:
         )
 
     @pytest.mark.parametrize(("number", "user"), [(1, "user3"), (2, "user2"), (3, None)])
-    def test_what_is_chosen_is_asked_about_with_whom_it_is_for(
+    def test_a_chosen_command_is_verified_with_its_person(
         self, door: Verifier, number: int, user: str | None
     ) -> None:
         door.say(UNSURE)
@@ -81,7 +81,7 @@ class TestTheDoor:
         assert done.target == user
         assert door.question is None
 
-    def test_every_choice_can_still_be_reached_from_every_question(self, door: Verifier) -> None:
+    def test_every_question_leaves_the_other_choices_open(self, door: Verifier) -> None:
         for first in (1, 2, 3):
             for second in (1, 2):
                 door.say(UNSURE)
@@ -101,14 +101,12 @@ class TestTheDoor:
         assert door.question == offered
         assert isinstance(door.reply(Reply(False, 3)), Asked)
 
-    def test_none_of_them_gives_back_what_was_heard(self, door: Verifier) -> None:
+    def test_rejecting_every_choice_returns_the_heard_words(self, door: Verifier) -> None:
         door.say(UNSURE)
         assert door.reply(Reply(False)) == Rejected("go to usher three")
         assert door.question is None
 
-    def test_sure_words_are_asked_about_at_once_with_the_rest_beside_them(
-        self, door: Verifier
-    ) -> None:
+    def test_a_certain_command_is_verified_at_once_with_alternatives(self, door: Verifier) -> None:
         asked = door.say(Say("go to user three", 0.9, CHOICES))
         assert isinstance(asked, Asked)
         assert (asked.target, asked.alternatives) == ("user3", ("navigate to user", "call number"))
@@ -117,12 +115,12 @@ class TestTheDoor:
         assert second.target == "user2"
         assert second.others[0] == asked.question
 
-    def test_spoken_words_that_mean_nothing_are_not_guessed_at_again(self, door: Verifier) -> None:
+    def test_meaningless_speech_asks_no_question(self, door: Verifier) -> None:
         found = door.say(Say("call number", 0.1, ()))
         assert not isinstance(found, Asked | Offered)
         assert door.question is None
 
-    def test_what_cannot_be_done_now_gives_back_what_was_heard(self, door: Verifier) -> None:
+    def test_an_impossible_command_returns_the_heard_words(self, door: Verifier) -> None:
         offered = door.say(Say("mark the number", 0.5, (command("mark numbers"),), sure=False))
         assert isinstance(offered, Offered)
         refused = door.reply(Reply(False, 1))
@@ -138,7 +136,7 @@ class TestTheDoor:
 
 
 class ScriptedEars:
-    """Ears that hear what the test says, when it says so."""
+    """Ears with scripted utterances."""
 
     def __init__(self, *, live: bool, answers: bool = False) -> None:
         self.live, self.answers = live, answers
@@ -174,7 +172,7 @@ class ScriptedEars:
 
 
 class Session:
-    """A session by lines, in which somebody types and somebody speaks, each when it is time."""
+    """A session by lines with a script of typed and spoken input."""
 
     def __init__(self, workspace: Workspace, ears: ScriptedEars) -> None:
         self.ears = ears
@@ -217,9 +215,7 @@ GREET = Say("greet everyone", 0.9, (command("greeting"),))
 
 
 class TestBySpeech:
-    def test_a_spoken_command_is_asked_about_and_answered_by_key(
-        self, workspace: Workspace
-    ) -> None:
+    def test_a_spoken_command_is_verified_by_key(self, workspace: Workspace) -> None:
         session = Session(workspace, ScriptedEars(live=True))
         session.script = [
             ("Now: Nobody has been", GREET),
@@ -231,7 +227,7 @@ class TestBySpeech:
         assert session.ears.closed == 1
         assert session.ears.asked[:2] == [True, False]
 
-    def test_a_choice_is_offered_and_answered_by_its_number(self, workspace: Workspace) -> None:
+    def test_a_choice_is_selected_by_its_number(self, workspace: Workspace) -> None:
         session = Session(workspace, ScriptedEars(live=True))
         offer = Say("greet the group", 0.5, (command("joke"), command("greeting")), sure=False)
         session.script = [
@@ -247,9 +243,7 @@ class TestBySpeech:
         assert session.script == []
         assert any("-> greet everyone" in line for line in written)
 
-    def test_a_stop_is_heard_while_a_question_is_open_and_answers_it_with_no(
-        self, workspace: Workspace
-    ) -> None:
+    def test_a_stop_answers_an_open_question_with_no(self, workspace: Workspace) -> None:
         session = Session(workspace, ScriptedEars(live=True))
         session.script = [
             ("Now: Nobody has been", GREET),
@@ -260,9 +254,7 @@ class TestBySpeech:
         assert not any("-> greet everyone" in line for line in session.run())
 
     @pytest.mark.parametrize("yes", [True, False])
-    def test_an_answer_can_be_spoken_where_that_is_switched_on(
-        self, workspace: Workspace, yes: bool
-    ) -> None:
+    def test_an_answer_can_be_spoken_if_switched_on(self, workspace: Workspace, yes: bool) -> None:
         session = Session(workspace, ScriptedEars(live=True, answers=True))
         session.script = [
             ("Now: Nobody has been", GREET),
@@ -272,7 +264,7 @@ class TestBySpeech:
         session.run()
         assert session.script == []
 
-    def test_a_command_that_was_spoken_too_early_waits_for_the_answer(
+    def test_a_command_spoken_during_a_question_waits_for_the_answer(
         self, workspace: Workspace
     ) -> None:
         session = Session(workspace, ScriptedEars(live=True))
@@ -287,14 +279,14 @@ class TestBySpeech:
         session.run()
         assert session.script == []
 
-    def test_a_microphone_that_breaks_leaves_the_keys(self, workspace: Workspace) -> None:
+    def test_the_keys_still_work_after_the_microphone_fails(self, workspace: Workspace) -> None:
         session = Session(workspace, ScriptedEars(live=True))
         session.ears.hear(TangyError("The cable is out."))
         session.script = [("The cable is out.", "greet everyone"), ("Did you say", "quit")]
         session.run()
         assert session.script == []
 
-    def test_a_recording_that_cannot_be_heard_ends_a_script(self, workspace: Workspace) -> None:
+    def test_an_undecodable_recording_ends_a_script(self, workspace: Workspace) -> None:
         session = Session(workspace, ScriptedEars(live=False))
         session.ears.hear(TangyError("Speech needs the package pocketsphinx."))
         with pytest.raises(TangyError, match="pocketsphinx"):
@@ -309,9 +301,7 @@ class TestBySpeech:
         assert STOPPED in written
 
     @pytest.mark.parametrize("live", [True, False])
-    def test_the_ears_end_with_the_session_whatever_they_do(
-        self, workspace: Workspace, live: bool
-    ) -> None:
+    def test_the_ears_close_with_the_session(self, workspace: Workspace, live: bool) -> None:
         session = Session(workspace, ScriptedEars(live=live))
         if not live:
             session.ears.hear(None)

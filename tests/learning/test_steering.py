@@ -1,4 +1,4 @@
-"""What is asked of the program itself is understood, typed and said."""
+"""Steering commands to the program itself, typed and spoken."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def nobody(name: str) -> str:
 
 
 @pytest.mark.parametrize("text", WAYS["undo"])
-def test_a_step_is_taken_back_in_many_words(text: str) -> None:
+def test_many_phrases_undo_a_step(text: str) -> None:
     assert read_teaching(text) == Undo()
 
 
-def test_other_words_steer_as_well() -> None:
+def test_redo_help_pause_and_resume_have_several_phrases() -> None:
     assert read_teaching("please redo that") == Redo()
     assert read_teaching("What can I say?") == "phrases"
     assert read_teaching("I need help") == "help"
@@ -44,7 +44,7 @@ def test_no_phrase_of_an_activity_steers_the_program(name: str) -> None:
     assert [phrase for phrase in book.phrases if steering_of(phrase)] == []
 
 
-def test_said_words_steer_where_the_sound_agrees() -> None:
+def test_spoken_steering_needs_an_agreeing_sound() -> None:
     assert understand(clearly_heard("undo that"), BOOK, USUAL) == Say("undo that", 1.0, None)
     agreed = AcousticEvidence("take that back", "take that back", -1.0, 1.0, 1.0)
     assert understand(agreed, BOOK, USUAL) == Say("take that back", 1.0, None)
@@ -54,5 +54,5 @@ def test_said_words_steer_where_the_sound_agrees() -> None:
 
 
 @pytest.mark.parametrize("text", ["I undid my coat", "help the user", "the step was high", ""])
-def test_other_words_steer_nothing(text: str) -> None:
+def test_other_words_are_no_steering(text: str) -> None:
     assert steering_of(text) is None

@@ -1,4 +1,4 @@
-"""A step can be made a rule: it covers what nobody showed, is learnt, and is undone like a step."""
+"""Rules from steps: they cover undemonstrated situations, are learnt, and can be undone."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ def ruled(teaching: TeachingSession, *facts: str) -> Ruled:
         ("the same whatever happens", ()),
     ],
 )
-def test_it_is_said_in_words(words: str, facts: tuple[str, ...]) -> None:
+def test_a_rule_can_be_given_in_words(words: str, facts: tuple[str, ...]) -> None:
     assert read_teaching(words) == SameWhatever(facts)
 
 
-def test_it_covers_what_differs_in_that_fact_alone(teaching: TeachingSession) -> None:
+def test_a_rule_covers_situations_that_differ_only_in_its_fact(teaching: TeachingSession) -> None:
     own = teaching.demonstration.steps[-1].state.situation
     rule = ruled(teaching, "clock")
     assert rule.covers and own not in rule.covers
@@ -70,7 +70,7 @@ def test_it_covers_what_differs_in_that_fact_alone(teaching: TeachingSession) ->
         assert seen_facts(situation)["hinted"] == seen_facts(own)["hinted"]
 
 
-def test_what_it_covers_is_sure_and_says_that_it_is_a_rule(
+def test_covered_situations_are_decided_by_the_rule(
     workspace: Workspace, teaching: TeachingSession
 ) -> None:
     rule, done = ruled(teaching, "clock"), teaching.demonstration.steps[-1].behaviour
@@ -85,7 +85,7 @@ def test_what_it_covers_is_sure_and_says_that_it_is_a_rule(
     assert not any(policy.decide(situation).sure for situation in others)
 
 
-def test_undo_takes_the_rule_back_first_and_then_the_step(
+def test_undo_removes_the_rule_before_the_step(
     workspace: Workspace, teaching: TeachingSession
 ) -> None:
     ruled(teaching, "clock")
@@ -97,7 +97,7 @@ def test_undo_takes_the_rule_back_first_and_then_the_step(
 
 
 @pytest.mark.parametrize("facts", [("weather",), ("answer",)])
-def test_a_fact_that_is_not_gone_by_is_refused(
+def test_a_rule_about_an_unused_fact_is_refused(
     workspace: Workspace, teaching: TeachingSession, facts: tuple[str, ...]
 ) -> None:
     assert isinstance(teaching.apply(SameWhatever(facts))[0], NoRule)

@@ -1,4 +1,4 @@
-"""The ears for stopping: what they learn from, and what follows where they found a stop."""
+"""The stop detector: its training texts, and the effect of a detected stop."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def share(texts: tuple[str, ...]) -> float:
     return sum(stops(text, BOOK.game) for text in some) / len(some)
 
 
-def test_nearly_all_texts_of_stops_stop_and_of_others_do_not() -> None:
+def test_most_stop_texts_stop_and_few_others_do() -> None:
     assert share(stop_texts()) > 0.9
     assert share(other_stop_texts()) < 0.05
 
 
-def test_the_texts_are_the_same_each_time_and_have_words_alone() -> None:
+def test_the_training_texts_are_reproducible_and_plain_words() -> None:
     texts = stop_texts()
     stop_texts.cache_clear()
     assert stop_texts() == texts
@@ -48,7 +48,7 @@ def test_the_texts_are_the_same_each_time_and_have_words_alone() -> None:
     assert not [text for text in (*texts, *other_stop_texts()) if set("{}_") & set(text)]
 
 
-def test_what_is_listened_for_has_stops_others_and_what_the_game_is_called() -> None:
+def test_the_vocabulary_has_stops_other_texts_and_the_name_of_the_game() -> None:
     found = wanted(BOOK, USUAL)
     assert found.stops
     assert found.no_stops
@@ -56,7 +56,7 @@ def test_what_is_listened_for_has_stops_others_and_what_the_game_is_called() -> 
 
 
 @pytest.mark.parametrize("words", ["they stop", "that cannot stop", "", "tell a nice joke now"])
-def test_a_stop_that_was_found_stops_whatever_the_words_were(words: str) -> None:
+def test_a_detected_stop_overrides_the_words(words: str) -> None:
     assert understand(heard(words, "hey stop"), BOOK, USUAL) == StopCommand("hey stop")
     said, _ = commanded(heard(words, "hey stop"), BOOK, USUAL, live=True)
     assert said == StopCommand("hey stop")
@@ -70,14 +70,12 @@ def test_a_stop_that_was_found_stops_whatever_the_words_were(words: str) -> None
         ("stop the robot", -0.9, True),  # the rules are certain
     ],
 )
-def test_words_that_are_perhaps_misheard_stop_by_the_rules_alone(
-    words: str, margin: float, stops: bool
-) -> None:
+def test_uncertain_words_stop_only_by_the_rules(words: str, margin: float, stops: bool) -> None:
     said = understand(heard(words, "", margin), BOOK, USUAL)
     assert isinstance(said, StopCommand) == stops
 
 
-def test_a_phrase_that_was_heard_well_is_no_stop() -> None:
+def test_a_clearly_heard_phrase_is_no_stop() -> None:
     said = understand(heard("call number", "don't come closer"), BOOK, USUAL)
     assert isinstance(said, Say)
     assert said.sure
@@ -95,33 +93,31 @@ def test_a_phrase_that_was_heard_well_is_no_stop() -> None:
         ("carry on with the bag", 0.2, False),
     ],
 )
-def test_in_games_what_steers_them_is_taken_where_it_was_heard_well(
-    words: str, margin: float, steers: bool
-) -> None:
+def test_steering_in_games_needs_a_clear_sound(words: str, margin: float, steers: bool) -> None:
     said, _ = replied(heard(words, "", margin), USUAL, steering=IN_GAMES, answers=False)
     assert said == (Say(words, 1.0, None) if steers else None)
     assert replied(heard(words, "", margin), USUAL, answers=False) == (None, None)
 
 
-def test_a_stop_that_was_found_stops_while_a_question_is_open_but_for_an_answer() -> None:
+def test_a_clear_answer_overrides_a_detected_stop() -> None:
     assert answer(heard("they stop", "hey stop"), USUAL) == StopCommand("hey stop")
     assert answer(heard("no thank you", "don't move", 0.5), USUAL) == Reply(False)
 
 
-def test_a_stop_that_was_found_stops_unless_both_decoders_heard_a_yes() -> None:
+def test_a_detected_stop_counts_unless_both_decoders_heard_a_yes() -> None:
     said = heard("yes please", "please stop", 0.5)
     assert answer(said, USUAL) == StopCommand("please stop")
     assert answer(replace(said, phrase="yes please"), USUAL) == Reply(True)
 
 
-def test_a_stop_that_was_found_stops_unless_both_decoders_heard_steering() -> None:
+def test_a_detected_stop_counts_unless_both_decoders_heard_steering() -> None:
     said = heard("undo that", "don't move", 0.5)
     assert understand(said, BOOK, USUAL) == StopCommand("don't move")
     assert understand(replace(said, phrase="undo that"), BOOK, USUAL) == Say("undo that", 1.0, None)
 
 
 class GuessingSearch:
-    """Stands in for the search: whatever the sound is, it has these guesses, best first."""
+    """A search with given hypotheses, best first, for any sound."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, *guesses: str) -> None:
         for name, does in (
@@ -141,7 +137,7 @@ class GuessingSearch:
 NO_STOPS = ("the dog", "the door", "a dog", "a door", "the log", "the lock")
 
 
-def test_the_likeliest_words_stop_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stop_as_best_hypothesis_is_certain(monkeypatch: pytest.MonkeyPatch) -> None:
     heard = GuessingSearch(monkeypatch, "hey stop", *NO_STOPS).hear()
     assert heard == HeardStop("hey stop", sure=True)
 
@@ -150,7 +146,7 @@ def test_the_likeliest_words_stop_beyond_doubt(monkeypatch: pytest.MonkeyPatch) 
     ("likely", "stops"),
     [((0.3, 0.7, 0.6), True), ((0.6, 0, 0, 0), False), ((0,) * 20 + (1,) * 20, False)],
 )
-def test_what_is_likely_to_stop_on_the_average_stops_in_doubt(
+def test_a_high_average_stop_likelihood_gives_an_uncertain_stop(
     monkeypatch: pytest.MonkeyPatch, likely: tuple[float, ...], stops: bool
 ) -> None:
     guesses = {f"dog {number}": one for number, one in enumerate(likely)}
@@ -161,7 +157,7 @@ def test_what_is_likely_to_stop_on_the_average_stops_in_doubt(
 
 
 @pytest.mark.parametrize(("words", "stops"), [(3, True), (7, False)])
-def test_a_long_sentence_has_to_be_likelier(
+def test_a_longer_sentence_needs_a_higher_likelihood(
     monkeypatch: pytest.MonkeyPatch, words: int, stops: bool
 ) -> None:
     said = " ".join(["dog"] * words)
@@ -170,7 +166,7 @@ def test_a_long_sentence_has_to_be_likelier(
 
 
 class TwoAnswers:
-    """Stands in for the processes beside the decoder; the one for the words may not be asked."""
+    """Stands in for the forked workers of the decoder; the one for the words may stay unused."""
 
     found = HeardStop()
     words = ""
@@ -194,7 +190,7 @@ class TwoAnswers:
 @pytest.mark.parametrize(
     ("sure", "words"), [(True, "call number"), (False, "they stop"), (False, "call number")]
 )
-def test_a_stop_beyond_doubt_waits_for_no_other_words_one_in_doubt_does(
+def test_only_an_uncertain_stop_waits_for_the_words(
     monkeypatch: pytest.MonkeyPatch, sure: bool, words: str
 ) -> None:
     monkeypatch.setattr(speech_decoder, "ForkedWorker", TwoAnswers)

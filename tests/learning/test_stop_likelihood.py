@@ -1,4 +1,4 @@
-"""What was learnt of sentences that stop the robot without a verb of stopping."""
+"""The learnt model of sentences that stop the robot without a verb of stopping."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.bench.stop_training import digest_of, stop_examples
         "please keep away from me",
     ],
 )
-def test_everyday_words_stop_without_a_verb_of_stopping(said: str) -> None:
+def test_everyday_sentences_without_a_stop_verb_stop(said: str) -> None:
     assert stops(said)
 
 
@@ -37,21 +37,21 @@ def test_everyday_words_stop_without_a_verb_of_stopping(said: str) -> None:
         "call the next number",
     ],
 )
-def test_other_words_like_these_stop_nothing(said: str) -> None:
+def test_similar_sentences_do_not_stop(said: str) -> None:
     assert not stops(said)
 
 
-def test_an_unknown_sentence_has_a_likelihood_between_none_and_all() -> None:
+def test_an_unknown_sentence_has_a_moderate_likelihood() -> None:
     assert 0 < stop_likelihood(("zyxt", "qwv")) < 0.6
 
 
-def test_a_set_that_is_left_out_teaches_nothing() -> None:
+def test_an_excluded_set_is_not_in_the_training_texts() -> None:
     own = set(stop_sets()["everyday"]["stops"])
     assert own <= set(stop_texts())
     assert not {"let's call it a day tangy", "brakes tangy brakes"} & set(stop_texts("everyday"))
 
 
 @pytest.mark.slow
-def test_the_model_that_comes_with_tangy_is_of_the_sentences_as_they_are() -> None:
+def test_the_shipped_model_matches_the_current_sentences() -> None:
     kept = json.loads(files("tangy_tui.language").joinpath(MODEL).read_text(encoding="utf-8"))
     assert kept["made_of"] == digest_of(stop_examples())

@@ -1,4 +1,4 @@
-"""What stops the robot, typed or spoken: the aim of a sentence decides, not its first word."""
+"""Sentences that stop the robot: the aim of a sentence decides, not its first word."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ DOORS = (
 
 
 @pytest.mark.parametrize("sentence", STOPPING[::2])
-def test_what_aims_at_the_robot_or_the_game_stops(sentence: str) -> None:
+def test_a_stop_aimed_at_the_robot_or_the_game_stops(sentence: str) -> None:
     assert stops(sentence)
     assert stops(sentence.upper()) and stops(f"  {sentence}!! ")
 
 
 @pytest.mark.parametrize("sentence", MENTIONING[::2])
-def test_what_only_mentions_stopping_does_not(sentence: str) -> None:
+def test_a_mention_of_stopping_does_not_stop(sentence: str) -> None:
     assert not stops(sentence)
     assert not stops(f"{sentence}.".capitalize())
 
 
-def test_the_sentences_that_were_written_apart_from_the_rules_are_told_apart_too() -> None:
+def test_held_out_sentences_are_classified() -> None:
     missed = [s for s in (*STOPPING[1::2], *STOPPING_TOO) if not stops(s, {"bingo"})]
     wrongly = [s for s in (*MENTIONING[1::2], *MENTIONING_TOO) if stops(s, {"bingo"})]
     assert (missed, wrongly) == ([], [])
@@ -63,18 +63,18 @@ def test_most_everyday_commands_stop_and_other_talk_does_not() -> None:
     assert len(stopped["others"]) <= 1 and stopped["talk"] == []
 
 
-def test_what_is_taken_away_from_nobody_may_be_the_tea() -> None:
+def test_taking_an_unnamed_thing_away_is_no_stop() -> None:
     assert not stops("could somebody please take it away")
     assert stops("take it away from me") and stops("take that robot away")
 
 
-def test_no_word_that_somebody_calls_the_robot_keeps_it_from_stopping() -> None:
+def test_adjectives_for_the_robot_do_not_hide_a_stop() -> None:
     missed = [s for s in STOPPING_WITH_ADJECTIVES if not stops(s, {"bingo"})]
     wrongly = [s for s in MENTIONING_WITH_ADJECTIVES if stops(s, {"bingo"})]
     assert (missed, wrongly) == ([], [])
 
 
-def test_no_other_speech_and_nothing_else_that_is_typed_stops() -> None:
+def test_other_speech_and_typed_text_do_not_stop() -> None:
     said = (*NEAR, *FAR, *WORDINGS, *DOORS[:-2])
     assert [sentence for sentence in said if stops(sentence)] == []
 
@@ -86,7 +86,7 @@ def test_no_phrase_of_an_activity_stops(name: str) -> None:
     assert [phrase for phrase in book.phrases if stops(phrase, book.game)] == []
 
 
-def test_all_that_is_listened_for_stops() -> None:
+def test_every_stop_phrase_stops() -> None:
     assert [phrase for phrase in STOPS if not stops(phrase)] == []
 
 
@@ -102,7 +102,7 @@ def test_all_that_is_listened_for_stops() -> None:
         ("go on", {"stop", "and", "go"}, False),
     ],
 )
-def test_the_game_is_called_by_its_name(words: str, game: set[str], meant: bool) -> None:
+def test_a_stop_may_name_the_game(words: str, game: set[str], meant: bool) -> None:
     assert stops(words, game) is meant
 
 
@@ -118,7 +118,7 @@ def test_the_game_is_called_by_its_name(words: str, game: set[str], meant: bool)
         "e-stop",
     ],
 )
-def test_who_types_in_a_hurry_is_understood(typed: str) -> None:
+def test_typing_errors_in_a_stop_are_understood(typed: str) -> None:
     assert stops(typed)
 
 
@@ -128,7 +128,7 @@ def test_words_that_are_run_together_are_understood(typed: str) -> None:
 
 
 @pytest.mark.parametrize("typed", ["spot", "post it", "tops", "shop", "the robot", "stamp"])
-def test_other_words_of_the_same_letters_are_none(typed: str) -> None:
+def test_other_words_with_similar_letters_do_not_stop(typed: str) -> None:
     assert not stops(typed)
 
 
@@ -149,7 +149,7 @@ def test_each_clause_counts_for_itself(typed: str, meant: bool) -> None:
 
 
 @given(st.lists(WORD, max_size=12).map(" ".join))
-def test_who_says_not_to_stop_is_never_taken_for_who_says_stop(words: str) -> None:
+def test_a_negated_stop_does_not_stop(words: str) -> None:
     assert not stops(f"don't stop {words.partition('stop')[0].replace('halt', '')} teasing")
 
 
@@ -173,5 +173,5 @@ def test_a_long_line_is_judged_at_once(once: str) -> None:
         ("the robot", False),
     ],
 )
-def test_what_names_the_robot_stops_it_whatever_follows(words: str, clear: bool) -> None:
+def test_a_stop_that_names_the_robot_needs_no_more_words(words: str, clear: bool) -> None:
     assert stops_whatever_follows(words) is clear

@@ -1,4 +1,4 @@
-"""Steps that the activity does not know: one is a bad row, many are another activity."""
+"""Steps unknown to the activity: one is a bad row, many mean another activity."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def misnamed(shown: Demonstration, *numbers: int) -> Demonstration:
     return replace(shown, steps=tuple(steps))
 
 
-def test_one_is_left_out_by_name_and_the_rest_is_learnt(activity: Activity, cover: Cover) -> None:
+def test_an_unknown_step_is_reported_and_dropped(activity: Activity, cover: Cover) -> None:
     first, *others = cover("bingo", 1, 4)
     used, notices = without_strange_steps(activity, [misnamed(first, 3), *others])
     (notice,) = notices
@@ -32,12 +32,14 @@ def test_one_is_left_out_by_name_and_the_rest_is_learnt(activity: Activity, cove
     learn_policy(activity, used, settings=ForestSettings(trees=3))
 
 
-def test_where_nothing_is_strange_all_is_as_it_was(activity: Activity, cover: Cover) -> None:
+def test_demonstrations_without_unknown_steps_are_unchanged(
+    activity: Activity, cover: Cover
+) -> None:
     shown = cover("bingo", 1, 4)
     assert without_strange_steps(activity, shown) == (list(shown), [])
 
 
-def test_where_there_are_many_the_activity_was_changed(activity: Activity, cover: Cover) -> None:
+def test_many_unknown_steps_mean_a_changed_activity(activity: Activity, cover: Cover) -> None:
     shown = [misnamed(one, *range(1, 99, 2)) for one in cover("bingo", 1, 4)]
     used, notices = without_strange_steps(activity, shown)
     assert (used, notices) == (shown, [])

@@ -1,4 +1,4 @@
-"""A teaching session: whatever is said in it, the log and the session agree."""
+"""A teaching session: questions, refusals, suggestions, undo and resuming."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def logged(store: Store) -> list[Demonstration]:
 # --------------------------------------------------------------------------- saying and asking
 
 
-def test_nothing_happens_before_the_question_is_answered_with_yes(store: Store) -> None:
+def test_nothing_is_executed_before_a_yes(store: Store) -> None:
     teaching = begun(store)
     before = teaching.world.observe()
     asked = teaching.apply(Say("greet everyone"))
@@ -82,7 +82,7 @@ def test_nothing_happens_before_the_question_is_answered_with_yes(store: Store) 
     assert teaching.question is None
 
 
-def test_no_gives_the_words_back_and_does_nothing(store: Store) -> None:
+def test_a_no_returns_the_words_and_does_nothing(store: Store) -> None:
     teaching = begun(store)
     teaching.apply(Say("tell a joke"))
     assert teaching.apply(NO) == [Rejected("tell a joke")]
@@ -90,7 +90,7 @@ def test_no_gives_the_words_back_and_does_nothing(store: Store) -> None:
     assert isinstance(teaching.apply(YES)[0], Refused), "the question is gone"
 
 
-def test_words_that_mean_nothing_are_given_back_and_drop_the_question(store: Store) -> None:
+def test_unknown_words_are_returned_and_drop_the_question(store: Store) -> None:
     teaching = begun(store)
     teaching.apply(Say("tell a joke"))
     said = teaching.apply(Say("qwertz"))[0]
@@ -99,7 +99,7 @@ def test_words_that_mean_nothing_are_given_back_and_drop_the_question(store: Sto
     assert teaching.question is None
 
 
-def test_what_was_heard_badly_offers_alternatives_that_are_asked_about_in_turn(
+def test_uncertain_words_offer_alternatives_in_turn(
     store: Store,
 ) -> None:
     teaching = begun(store)
@@ -116,7 +116,7 @@ def test_what_was_heard_badly_offers_alternatives_that_are_asked_about_in_turn(
     assert teaching.question == refused[0], "a wrong number leaves the question open"
 
 
-def test_what_can_be_said_now_is_never_refused_and_begins_with_what_was_shown_most(
+def test_suggestions_are_never_refused_and_start_with_the_most_frequent(
     store: Store,
 ) -> None:
     teaching = begun(store)
@@ -133,7 +133,7 @@ def test_what_can_be_said_now_is_never_refused_and_begins_with_what_was_shown_mo
 
 
 @pytest.mark.parametrize("expected", [BINGO.expected, {}])
-def test_what_can_be_said_now_begins_with_what_helps_here(
+def test_suggestions_start_with_the_helpful_phrase(
     store: Store, expected: dict[Situation, str]
 ) -> None:
     teaching = session(store, activity=replace(BINGO, expected=expected))
@@ -152,13 +152,13 @@ def test_what_can_be_said_now_begins_with_what_helps_here(
     assert expected or beside
 
 
-def test_what_can_be_said_now_is_nothing_once_the_game_is_over(store: Store) -> None:
+def test_a_finished_game_has_no_suggestions(store: Store) -> None:
     teaching = begun(store)
     whole_game(teaching)
     assert teaching.sayable == ()
 
 
-def test_behaviours_for_somebody_are_refused_while_nobody_asks(store: Store) -> None:
+def test_behaviours_for_a_person_are_refused_while_nobody_asks(store: Store) -> None:
     teaching = begun(store)
     for phrase in ("encourage", "remove markers", "go to user", "celebrate"):
         refused = teaching.apply(Say(phrase))[0]
@@ -167,7 +167,7 @@ def test_behaviours_for_somebody_are_refused_while_nobody_asks(store: Store) -> 
     assert teaching.question is None
 
 
-def test_the_robot_can_be_sent_to_a_person_who_takes_part_by_number_or_name(store: Store) -> None:
+def test_the_robot_can_be_sent_to_a_player_by_number_or_name(store: Store) -> None:
     teaching = begun(store)
     for phrase in ("go to user 2", "go to user two"):
         asked = teaching.apply(Say(phrase))[0]
@@ -178,7 +178,7 @@ def test_the_robot_can_be_sent_to_a_person_who_takes_part_by_number_or_name(stor
 
 
 @pytest.mark.parametrize("phrase", ["go to user 7", "Go to user seven, please", "go to 7"])
-def test_who_is_not_there_is_said_with_those_who_are(store: Store, phrase: str) -> None:
+def test_an_absent_person_is_refused_with_the_list_of_players(store: Store, phrase: str) -> None:
     refused = begun(store).apply(Say(phrase))[0]
     everybody = ("User 1", "User 2", "User 3", "User 4")
     assert refused == Refused("no such person", phrase, "user 7", people=everybody)
@@ -187,7 +187,7 @@ def test_who_is_not_there_is_said_with_those_who_are(store: Store, phrase: str) 
     )
 
 
-def test_a_name_that_is_nobodys_is_said_as_well(store: Store) -> None:
+def test_an_unknown_name_is_refused_with_the_list_of_players(store: Store) -> None:
     teaching = begun(store)
     refused = teaching.apply(Say("go to Zorro"))[0]
     assert isinstance(refused, Refused)
@@ -207,7 +207,7 @@ def test_after_the_game_only_the_next_one_or_undo_is_possible(store: Store) -> N
     assert logged(store) == [demonstration], "a game without a step is not in the log"
 
 
-def test_the_last_step_of_a_finished_game_can_be_undone_and_the_game_goes_on(store: Store) -> None:
+def test_undoing_the_last_step_reopens_a_finished_game(store: Store) -> None:
     teaching = begun(store)
     demonstration = whole_game(teaching)
     undone = teaching.apply(Undo())[0]
@@ -220,7 +220,7 @@ def test_the_last_step_of_a_finished_game_can_be_undone_and_the_game_goes_on(sto
     assert logged(store) == [demonstration]
 
 
-def test_undoing_drops_the_question_that_was_open(store: Store) -> None:
+def test_undo_drops_an_open_question(store: Store) -> None:
     teaching = begun(store)
     teach(teaching, "greet everyone")
     teaching.apply(Say("tell a joke"))
@@ -232,7 +232,7 @@ def test_undoing_drops_the_question_that_was_open(store: Store) -> None:
 # ------------------------------------------------------------------------------ leave, resume
 
 
-def test_an_unfinished_demonstration_is_taken_up_where_it_was_left(store: Store) -> None:
+def test_an_unfinished_demonstration_is_resumed(store: Store) -> None:
     first = begun(store)
     teach(first, "greet everyone", *["next number"] * 6)
     second = session(store, seed=9)
@@ -244,7 +244,7 @@ def test_an_unfinished_demonstration_is_taken_up_where_it_was_left(store: Store)
     assert teach(first, "next number")[0].outcome == teach(second, "next number")[0].outcome
 
 
-def test_a_new_demonstration_leaves_the_unfinished_one_as_it_is(store: Store) -> None:
+def test_a_new_demonstration_leaves_an_unfinished_one_unchanged(store: Store) -> None:
     teach(begun(store), "greet everyone")
     second = session(store, seed=2)
     assert second.begin(resume=False)[0] == Begun(second.demonstration, resumed=False)
@@ -252,14 +252,14 @@ def test_a_new_demonstration_leaves_the_unfinished_one_as_it_is(store: Store) ->
     assert [len(d.steps) for d in logged(store)] == [1, 1]
 
 
-def test_teachers_do_not_take_up_each_others_demonstrations(store: Store) -> None:
+def test_a_teacher_does_not_resume_the_demonstration_of_another(store: Store) -> None:
     teach(begun(store), "greet everyone")
     event = session(store, teacher="Bo", seed=2).begin()[0]
     assert isinstance(event, Begun)
     assert not event.resumed
 
 
-def test_a_demonstration_goes_on_with_the_people_it_was_begun_with(store: Store) -> None:
+def test_a_resumed_demonstration_keeps_its_people(store: Store) -> None:
     teach(begun(store), "greet everyone")
     with_eight = begun(store, users=8, seed=5)
     assert len(with_eight.people) == 4
@@ -267,7 +267,7 @@ def test_a_demonstration_goes_on_with_the_people_it_was_begun_with(store: Store)
     assert isinstance(with_eight.apply(Say("go to user 3"))[0], Asked)
 
 
-def test_what_another_simulator_made_is_kept_but_not_gone_on_with(
+def test_a_demonstration_of_another_simulator_is_kept_but_not_resumed(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first = begun(store)
@@ -286,7 +286,9 @@ def test_what_another_simulator_made_is_kept_but_not_gone_on_with(
 
 
 @pytest.mark.parametrize("users", [1, 4, 8])
-def test_the_scripted_teacher_demonstrates_what_is_expected(users: int, store: Store) -> None:
+def test_the_scripted_teacher_demonstrates_the_expected_behaviours(
+    users: int, store: Store
+) -> None:
     teaching = begun(store, users=users)
     demonstration = whole_game(teaching)
     assert demonstration.finished
@@ -306,12 +308,12 @@ def test_the_scripted_teacher_teaches_a_made_up_activity_too(
     assert logged(store) == []
 
 
-def test_the_scripted_teacher_needs_to_know_what_is_expected(store: Store) -> None:
+def test_the_scripted_teacher_needs_expected_behaviours(store: Store) -> None:
     with pytest.raises(TangyError, match=r"does not say what is expected"):
         ScriptedTeacher(session(store, activity=replace(BINGO, expected={})))
 
 
-def test_a_phrase_typed_exactly_is_understood_and_done_in_few_calls(store: Store) -> None:
+def test_an_exact_phrase_needs_few_function_calls(store: Store) -> None:
     """A fifth of the 1,822 calls that it took while the unneeded alternatives were ranked too."""
     teaching = begun(store)
     teach(teaching, "greet everyone", "call a number")  # finds the lines of the cards, once

@@ -1,4 +1,4 @@
-"""Laws of a teaching session: the log and the session agree, whatever is said or goes wrong."""
+"""Laws of a teaching session: the log and the session agree after any command or error."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def expected_phrase(teaching: TeachingSession) -> str:
 @pytest.mark.slow
 @tried(60)
 @given(st.integers(0, 50), st.integers(1, 8), st.lists(commands, max_size=40))
-def test_whatever_is_said_the_log_agrees_with_the_session(
+def test_the_log_agrees_with_the_session_after_any_commands(
     seed: int, users: int, said: list[TeacherCommand]
 ) -> None:
     with empty_store() as store:
@@ -115,7 +115,9 @@ def test_whatever_is_said_the_log_agrees_with_the_session(
 @pytest.mark.slow
 @tried(25)
 @given(st.integers(0, 50), st.integers(0, 60), st.integers(1, 5))
-def test_undone_and_done_again_leads_to_the_same_state(seed: int, length: int, back: int) -> None:
+def test_undoing_and_repeating_steps_gives_the_same_state(
+    seed: int, length: int, back: int
+) -> None:
     with empty_store() as store:
         teaching = begun(store, seed=seed)
         phrases: list[str] = []
@@ -134,7 +136,7 @@ def test_undone_and_done_again_leads_to_the_same_state(seed: int, length: int, b
         assert logged(store) == [demonstration] == [teaching.demonstration]
 
 
-def test_however_often_another_choice_is_made_there_are_at_most_three_more(store: Store) -> None:
+def test_a_question_has_at_most_three_alternatives(store: Store) -> None:
     teaching = begun(store)
     asked = teaching.apply(Say("back funny everyone"))[0]
     for _ in range(8):
@@ -149,7 +151,7 @@ def test_however_often_another_choice_is_made_there_are_at_most_three_more(store
     assert teaching.demonstration.steps == ()
 
 
-def test_after_a_resumed_game_comes_one_that_was_not_played_yet(store: Store) -> None:
+def test_a_resumed_game_is_followed_by_a_new_seed(store: Store) -> None:
     teach(begun(store, seed=7), "greet everyone")
     resumed = begun(store, seed=2)
     teach(resumed, "goodbye")
@@ -157,7 +159,7 @@ def test_after_a_resumed_game_comes_one_that_was_not_played_yet(store: Store) ->
     assert resumed.demonstration.seed == 8
 
 
-def test_there_is_nothing_to_undo_before_the_first_step(store: Store) -> None:
+def test_undo_before_the_first_step_is_refused(store: Store) -> None:
     assert isinstance(begun(store).apply(Undo())[0], Refused)
 
 
@@ -174,7 +176,7 @@ def failing(monkeypatch: pytest.MonkeyPatch, store: Store, kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["demonstration begun", "demonstration step"])
 @pytest.mark.parametrize("length", [0, 3])
-def test_a_step_that_cannot_be_kept_has_not_happened_and_can_be_repeated(
+def test_a_step_that_cannot_be_stored_can_be_repeated(
     kind: str, length: int, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     teaching = begun(store)
@@ -194,7 +196,7 @@ def test_a_step_that_cannot_be_kept_has_not_happened_and_can_be_repeated(
     assert logged(store) == [teaching.demonstration]
 
 
-def test_an_undo_that_cannot_be_kept_has_not_happened(
+def test_an_undo_that_cannot_be_stored_changes_nothing(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     teaching = begun(store)
@@ -208,7 +210,7 @@ def test_an_undo_that_cannot_be_kept_has_not_happened(
     assert logged(store) == [before]
 
 
-def test_every_step_survives_the_log_as_it_was(
+def test_every_step_is_encoded_and_decoded_unchanged(
     demonstrate: Callable[[str, int, int], Demonstration],
 ) -> None:
     for step in demonstrate("bingo", 1, 8).steps:
