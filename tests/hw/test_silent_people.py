@@ -8,8 +8,9 @@ from typing import cast
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_hw.robot_client.declared_live_world import LOOK_SECONDS, DeclaredLiveWorld
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.silence import SILENCE
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
@@ -60,6 +61,21 @@ def test_a_robot_asks_a_silent_person_again_in_the_words_of_the_file(
     more = [ask(world).unclear for _ in range(2)]
     asked = [one.asked_again for unclear in (done.unclear, *more) for one in unclear]
     assert asked == [True] * activity.asking.visit + [False, False]
+
+
+def test_a_person_asked_again_has_the_whole_pause_to_answer_whatever_the_clock(
+    activity: DeclaredActivity,
+) -> None:
+    link = FakeLink(PEOPLE)
+    world = live(activity, link)
+    seen: list[tuple[int, float]] = []  # how much Tangy has said, and when
+    link.meanwhile = lambda what, time: seen.append((len(link.said), time))
+    before = world.observe()
+    ask(world)
+    last = [time for said, time in seen if said == len(link.said)]
+    assert last[-1] - last[0] >= PAUSE_SECONDS - LOOK_SECONDS
+    after = dict(world.observe().facts)
+    assert dict(before.facts) != after and after["clock"] == ">=20"  # it went on meanwhile
 
 
 def test_a_robot_does_not_ask_a_person_again_after_an_answer(activity: DeclaredActivity) -> None:

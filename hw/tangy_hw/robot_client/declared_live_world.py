@@ -147,10 +147,9 @@ class DeclaredLiveWorld(LiveWorld):
             Whether the words state a fact.
         """
         found = None if self.over else meant(self.game, who, said)
-        if found is None:
-            return False
-        self.take(FactObservation(found, certainty, source))
-        return True
+        if found is not None:
+            self.take(FactObservation(found, certainty, source))
+        return found is not None
 
     def take(self, observed: FactObservation) -> None:
         """Add an observation of a fact; it takes effect at the next `observe`."""
@@ -313,21 +312,24 @@ class DeclaredLiveWorld(LiveWorld):
         """Wait until people have changed the state that the policy sees, at most for the pause.
 
         A person whom the behaviour addressed, and who does nothing in the pause, is asked again in
-        the words of the file, and given another pause.
+        the words of the file, and given another pause, which no timer ends.
         """
         declared = self.activity.declaration.behaviours.get(behaviour)
         pause = PAUSE_SECONDS if declared is None else declared.pause
         seen, until = self.game.seen(), self.link.time + pause
         words = again(self.game, behaviour, whom) if behaviour and whom is not None else []
         silent = not self._did.get(whom or "")
+        held: float | None = None  # when the person was asked again
         try:
-            while self.link.time < until and self.game.seen() == seen:
+            while self.link.time < until and self.game.seen(held) == seen:
                 self.commands.wait(LOOK_SECONDS, asks=True)
                 self._hear()
                 silent = silent and self.unsure is None and not self._did.get(whom or "")
                 until += self._ask_again()
-                if whom and words and silent and self.link.time >= until:
-                    until = self.link.time + self._ask_silent(words, whom, pause)
+                over = self.link.time >= until and self.game.seen() == seen
+                if over and silent and whom and words:
+                    held, waits = self.game.now, self._ask_silent(words, whom, pause)
+                    until = self.link.time + waits
         except DeviceError:  # the devices' readings show the problem
             return
 

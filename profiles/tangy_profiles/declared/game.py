@@ -201,10 +201,16 @@ class DeclaredGame:
                 break
         return stage, about
 
-    def seen(self) -> tuple[str, tuple[str, ...]]:
-        """Return what the policy sees: the stage, and the values of its facts."""
+    def seen(self, at: float | None = None) -> tuple[str, tuple[str, ...]]:
+        """Return what the policy sees: the stage, and the values of its facts.
+
+        `at` is the time for timers, in s of this game (default: now).
+        """
+        now, self.now = self.now, self.now if at is None else at
         stage, about = self.stage()
-        return stage.name, tuple(self.value(name, about) for name in stage.sees)
+        seen = stage.name, tuple(self.value(name, about) for name in stage.sees)
+        self.now = now
+        return seen
 
     def allows(self, name: str, whom: str | None) -> bool:
         """Return whether a behaviour is possible now, for a player or the group."""
