@@ -81,12 +81,12 @@ def read_given_text(path: Path, most: int, kind: type[TangyError] = TangyError) 
 
 
 def lines_of(content: bytes) -> str:
-    """Decode UTF-8 text and normalise its line ends.
+    """Decode UTF-8 text without its byte order mark, and normalise its line ends.
 
     Raises:
         UnicodeDecodeError: it is not UTF-8.
     """
-    return content.decode().replace("\r\n", "\n").replace("\r", "\n")
+    return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _check(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.acts import Act
 from tangy_profiles.declared.speech import media
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.errors import TangyError
@@ -27,8 +28,11 @@ class TriedStep:
     whom: str
     said: str
     doing: dict[str, str]
+    """What people did, in words."""
     silent: tuple[str, ...] = ()
     """The people who said nothing, once for each time Tangy asked them again."""
+    facts: tuple[Act, ...] = ()
+    """What people did, as changes of facts."""
     media: tuple[str, ...] = ()
     """The names of the files that Tangy shows and plays."""
 
@@ -62,11 +66,17 @@ def tried_game(activity: Activity, users: int, seed: int) -> Iterator[TriedStep]
         action = activity.action(behaviour, whom, None)
         outcome = world.execute(action)
         said, _ = activity.words_of(action, outcome, lambda id: names.get(id, id))
-        did = {names.get(id, EVERYBODY): ", ".join(acts) for id, acts in world.happened.items()}
+        did = {
+            names.get(id, EVERYBODY): ", ".join(map(world.words_of, acts))
+            for id, acts in world.happened.items()
+        }
+        changed = tuple(act for acts in world.happened.values() for act in acts)
         silent = tuple(names.get(one.person, "") for one in outcome.unclear if one.asked_again)
         person = names.get(whom or "", "")
         files = (Path(one.path).name for one in media(world.game, expected) if one is not None)
-        yield TriedStep(number, situation, expected, person, said, did, silent, tuple(files))
+        yield TriedStep(
+            number, situation, expected, person, said, did, silent, changed, tuple(files)
+        )
         if world.over:
             return
     raise TangyError(f"{activity.title}: the game did not end within {MOST_STEPS} steps.")

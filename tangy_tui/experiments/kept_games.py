@@ -27,8 +27,15 @@ def to_read(game: Mapping[str, Any]) -> bool:
 def keep_games(data: Path, to: Path, games: Sequence[Mapping[str, Any]]) -> None:
     """Copy the data folder in which games were played, once it is closed, and add their faults.
 
-    The copy has the log, which `tangy log` reads, and those of the robot process and the bench.
+    The copy has the log, which `tangy log` reads, and those of the robot process and the bench. It
+    has no sockets.
     """
     rmtree(to, ignore_errors=True)
-    copytree(data, to)
+    copytree(data, to, ignore=_no_files)
     (to / FAULTS).write_text(json.dumps(list(games), indent=2, ensure_ascii=False) + "\n")
+
+
+def _no_files(folder: str, names: list[str]) -> list[str]:
+    """Return the names in a folder that are neither files nor folders."""
+    paths = {name: Path(folder, name) for name in names}
+    return [name for name, path in paths.items() if not (path.is_file() or path.is_dir())]

@@ -43,6 +43,11 @@ def converted_lines(file: str, new: str, added: Sequence[str], lacks: Sequence[s
     return told
 
 
+def no_toml_name(file: str) -> str:
+    """Refuse the name of a new file, which Tangy would not open as an activity."""
+    return f"{file}: the name of an activity's file must end in .toml. Nothing is written."
+
+
 def is_no_activity(file: str) -> str:
     """Refuse a file that is no TOML, and tell how to use a file of questions."""
     return (

@@ -77,11 +77,18 @@ def activity_convert(
     Its games stay the same, and the old file stays as it is.
     """
     from tangy_tui.app.activity_conversion import converted
-    from tangy_tui.text.activity_conversion import COMMENTS, converted_lines, is_no_activity
+    from tangy_tui.text.activity_conversion import (
+        COMMENTS,
+        converted_lines,
+        is_no_activity,
+        no_toml_name,
+    )
 
     if file.suffix != ".toml":
         raise TangyError(plain(is_no_activity(str(file))))
     new = file.with_name(f"{file.stem}-new.toml") if to is None else to
+    if new.suffix != ".toml":
+        raise TangyError(plain(no_toml_name(str(new))))
     found = converted(file, COMMENTS)
     if found.added:
         _write(new, found.text, "choose another with --to")

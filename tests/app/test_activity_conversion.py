@@ -53,6 +53,20 @@ def test_a_converted_file_is_the_same_activity_and_names_its_defaults(
     assert not converted(put(tmp_path, found.text), COMMENTS).added
 
 
+def test_a_new_file_that_could_not_be_opened_is_not_written(tangy: Tangy, tmp_path: Path) -> None:
+    file = put(tmp_path, TEXT)
+    done = tangy("activity", "convert", str(file), "--to", str(tmp_path / "out.txt"))
+    assert done.returncode == 2
+    assert "must end in .toml" in done.stderr
+    assert not (tmp_path / "out.txt").exists()
+
+
+def test_a_file_saved_with_a_byte_order_mark_is_the_same_activity(tmp_path: Path) -> None:
+    plain = read_activity(put(tmp_path, TEXT))
+    marked = read_activity(put(tmp_path, "\ufeff" + TEXT))
+    assert marked == plain
+
+
 @pytest.mark.parametrize("ending", ["", "\n"])
 def test_what_the_file_leaves_out_stays_what_it_was(ending: str, tmp_path: Path) -> None:
     shipped = Path(shipped_activities()["bingo"]).read_text(encoding="utf-8")

@@ -23,6 +23,15 @@ def test_everything_that_a_person_did_after_a_step_is_told() -> None:
     assert any(", " in did for did in told)
 
 
+def test_what_people_do_is_told_in_the_words_of_the_file_and_kept_as_facts() -> None:
+    steps = list(tried_game(declared("trivia"), 3, 1))
+    told = {did for step in steps for did in step.doing.values()}
+    assert "it is right" in told or "it is wrong" in told
+    assert not any(":" in did for did in told)
+    answers = [act for step in steps for act in step.facts if act.fact == "answer"]
+    assert {act.value for act in answers} <= {"right", "wrong"} and answers
+
+
 def test_the_person_of_each_step_has_a_name() -> None:
     names = {one.name for one in load_people(3)}
     steps = [step for step in tried_game(declared("trivia"), 3, 1) if "an answer" in step.situation]

@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
+from socket import AF_UNIX, socket
 from typing import Any
 from xml.etree import ElementTree
 
@@ -225,7 +226,11 @@ def test_games_with_something_wrong_are_kept_to_be_read(
     data, kept = tmp_path / "data", tmp_path / "logs" / "seed-2-games-1-to-5"
     data.mkdir()
     (data / "robot.log").write_text("what the robot process wrote")
+    door = socket(AF_UNIX)
+    door.bind(str(data / "tangy.sock"))  # a killed program leaves it
+    door.close()
     for _ in range(2):  # the second run replaces the first
         keep_games(data, kept, [missed])
     assert (kept / "robot.log").read_text() == "what the robot process wrote"
     assert json.loads((kept / "faults.json").read_text()) == [missed]
+    assert not (kept / "tangy.sock").exists()

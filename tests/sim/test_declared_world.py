@@ -122,5 +122,6 @@ def test_everything_that_a_person_did_after_a_behaviour_is_told() -> None:
             for person, did in world.happened.items():
                 several += len(did) > 1
                 assert world.game.acts[person] - before.acts[person] <= len(did)
-                assert all(one in world.scene().doing[person] for one in did)
+                doing = world.scene().doing[person]
+                assert all(world.words_of(act) in doing for act in did)
     assert several > 0

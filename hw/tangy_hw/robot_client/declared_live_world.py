@@ -397,5 +397,6 @@ class DeclaredLiveWorld(LiveWorld):
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""
         scene = super().scene()  # its tracker is a view of the game
-        did = {who: ", ".join(acts) for who, acts in self._did.items()}
-        return replace(scene, doing={**scene.doing, **did})
+        return replace(
+            scene, doing={**scene.doing, **{w: ", ".join(a) for w, a in self._did.items()}}
+        )

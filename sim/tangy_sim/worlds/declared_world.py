@@ -20,8 +20,9 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.lots import drawn_game
 from tangy_profiles.declared.silence import silence
+from tangy_profiles.declared.situation_words import value_words
 from tangy_profiles.declared.speech import again, media, words
-from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
+from tangy_profiles.declared.vocabulary import HERE, NO, YES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_rules import GamePlan
@@ -94,7 +95,7 @@ class DeclaredWorld:
         for person in self.game_plan.absent:
             self.game.observe(HERE, person, NO)
         self.over = False
-        self.happened: dict[str, list[str]] = {}
+        self.happened: dict[str, list[Act]] = {}
         """People's actions after the last behaviour, in order; "" is the whole group."""
         self._not_clear: list[UnclearAnswer] = []
         self._asked_again: dict[str, int] = {}
@@ -153,6 +154,10 @@ class DeclaredWorld:
         unclear = tuple(self._not_clear)
         return Outcome(done.completed, seconds, (), response, speech, image, unclear, led_on)
 
+    def words_of(self, act: Act) -> str:
+        """Describe what a person did, in the words of the file."""
+        return value_words(self._declaration.facts[act.fact], act.value)
+
     def who(self, place: str) -> str:
         """Return who sits at a person's place: always that person."""
         return place
@@ -162,7 +167,7 @@ class DeclaredWorld:
         game = self.game
         asking = () if self.over else tuple(game.queue)  # after the game nobody is served
         doing = {
-            one: ", ".join(self.happened.get(one, ()))
+            one: ", ".join(self.words_of(act) for act in self.happened.get(one, ()))
             or ("asks for help" if one in asking else "watches")
             for one in self.people
         }
@@ -245,6 +250,5 @@ class DeclaredWorld:
 
     def _take_in(self, act: Act) -> None:
         if take_in(self.game, act):
-            did = "asks for help" if act.fact == ASKING else f"{act.fact}: {act.value}"
-            self.happened.setdefault(act.who or "", []).append(did)
+            self.happened.setdefault(act.who or "", []).append(act)
             self._asked_again.pop(act.who or "", None)
