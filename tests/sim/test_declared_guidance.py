@@ -124,6 +124,26 @@ def test_two_guided_games_are_enough_where_something_comes_about_only_once_in_a_
             world_of_games.execute(action)
 
 
+def test_what_is_announced_comes_after_the_next_command() -> None:
+    activity, announced = declared("trivia"), 0
+    for seed in range(3):
+        world = GuidedDeclaredWorld(
+            activity, ("user1", "user2"), seed=seed, shown=DemonstratedMoves(activity.behaviours)
+        )
+        state = world.begin()
+        while not world.over:
+            coming = world.coming
+            name = activity.expected[state.situation]
+            world.execute(
+                activity.action(activity.behaviours[name], whom(activity, state, name), None)
+            )
+            state = world.observe()
+            if coming is not None and not coming.goes_back:
+                announced += 1
+                assert state.situation == coming.situation
+    assert announced > 3
+
+
 def test_a_guided_game_that_goes_back_says_what_for() -> None:
     activity = read_activity(FILES / "toss.toml")
     assert isinstance(activity, DeclaredActivity)

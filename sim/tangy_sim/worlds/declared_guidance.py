@@ -14,9 +14,10 @@ from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.ahead import EventPathStep, moment_key, nearest_way
 from tangy_profiles.declared.demonstrated_moves import DemonstratedMoves
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.search import SOON
 from tangy_profiles.declared.search_way import Event
 from tangy_profiles.scene import ArrangedSituation
-from tangy_profiles.state import EVERYBODY, ActivityState, Outcome
+from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Situation
 from tangy_sim.worlds.declared_world import DeclaredWorld
 
 MOST_BACK = 25
@@ -46,7 +47,8 @@ class GuidedDeclaredWorld(DeclaredWorld):
         self.taught = self._shown.copy()
         self.covered = False
         self.coming: ArrangedSituation | None = None
-        """The coming situation, None if it is left to chance."""
+        """What people will bring about after the next command; None if it follows from commands."""
+        self._aim: Situation | None = None
         self._moments: list[DeclaredGame] = []
         self._legs: list[EventPathStep] = []
         self._went_back = 0
@@ -86,9 +88,11 @@ class GuidedDeclaredWorld(DeclaredWorld):
         if not (self._legs and self._legs[0].key == key):
             way = nearest_way((self.game,), self.taught)
             self._legs = list(way.legs) if way is not None else []
-            several = way is not None and len(way.legs) > 1
-            self.coming = ArrangedSituation(way.situation) if way and several else None
-        return self._legs.pop(0).event if self._legs else None
+            self._aim = None if way is None else way.situation
+        leg = self._legs.pop(0) if self._legs else None
+        soon = len(self._legs) == 1 and self._legs[0].event != SOON
+        self.coming = ArrangedSituation(self._aim) if soon and self._aim is not None else None
+        return None if leg is None else leg.event
 
     def _go_back(self) -> None:
         """Go back to the moment nearest to a missing situation; end the game if there is none."""
@@ -101,7 +105,7 @@ class GuidedDeclaredWorld(DeclaredWorld):
         self.game = latest[way.start].copy()
         self.game.step, self.over = step, False
         self._went_back += 1
-        self._legs = list(way.legs)
+        self._legs, self._aim = list(way.legs), None  # it is announced now
         self.coming = ArrangedSituation(way.situation, goes_back=True)
         self._bring_about(self._legs.pop(0).event)
 
