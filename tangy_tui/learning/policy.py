@@ -167,10 +167,13 @@ def learn_policy(
     situations = list(all_situations(activity))
     strange = set(rows) - set(product(situations, activity.behaviours))
     if strange:
-        situation, behaviour = min(strange)
+        gone = sorted({behaviour for _, behaviour in strange} - set(activity.behaviours))
+        lacks = f"the behaviour {gone[0]!r}" if gone else repr(activity.in_words(min(strange)[0]))
         raise NotOfThisActivity(
-            f"{activity.title} has changed since it was demonstrated, and no longer has "
-            f"{' / '.join(situation)} -> {behaviour}: demonstrate it in another data folder."
+            f"{activity.title} has changed since it was demonstrated, and no longer has {lacks}. "
+            "Give it its old name in the file again (the 'question' and 'phrases' of a behaviour, "
+            "and the 'words' of a stage, are what people read and say), or give the activity "
+            "another 'name', and demonstrate it again. What was demonstrated is kept."
         )
     if not rows:
         raise NothingToLearnFrom(

@@ -255,8 +255,11 @@ def test_demonstrations_of_an_older_activity_are_refused(
     rows = everything(activity)
     with pytest.raises(NotOfThisActivity, match="Lanterns has changed since"):
         learn_policy(lanterns, [showing(*rows)])
-    with pytest.raises(NotOfThisActivity, match="start / ANR / occluded -> sing"):
+    with pytest.raises(NotOfThisActivity, match=r"no longer has the behaviour 'sing'.*old name"):
         learn_policy(activity, [showing(*rows, (rows[0][0], "sing"))])
+    strange = rows[0][0]._replace(stage="supper")
+    with pytest.raises(NotOfThisActivity, match=r"no longer has '.*supper.*old name"):
+        learn_policy(activity, [showing(*rows, (strange, rows[0][1]))])
 
 
 def test_a_situation_of_another_activity_has_no_decision(covered: Policy) -> None:
