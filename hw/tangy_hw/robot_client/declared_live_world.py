@@ -249,9 +249,8 @@ class DeclaredLiveWorld(LiveWorld):
         speech, image = words(after, game, behaviour.name, action.strategy, whom)
         asks = "" if behaviour.persuades else self.seat_of(whom)
         shown, heard = media(after, behaviour.name)
-        picture = Picture(
-            with_names(image, self.seat_of), asks=asks, file=shown.path if shown else ""
-        )
+        file = shown.path if shown else ""
+        picture = Picture(with_names(image, self.seat_of), asks=asks, file=file)
         self.say(
             with_names(speech, self.name_of),
             picture,
@@ -397,6 +396,5 @@ class DeclaredLiveWorld(LiveWorld):
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""
         scene = super().scene()  # its tracker is a view of the game
-        return replace(
-            scene, doing={**scene.doing, **{w: ", ".join(a) for w, a in self._did.items()}}
-        )
+        did = {who: ", ".join(acts) for who, acts in self._did.items()}
+        return replace(scene, doing={**scene.doing, **did})
