@@ -1,4 +1,4 @@
-"""One of many people is chosen by letters of the name; the typed word stop still stops."""
+"""Choosing one of many people by letters of the name; typing stop still stops."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Asking(TangyScreen[None]):
         ("h e r e enter escape escape", None),  # what stands beside the names does not count
     ],
 )
-async def test_letters_filter_enter_takes_and_esc_goes_back(
+async def test_letters_filter_enter_chooses_and_esc_goes_back(
     run: Run, keys: str, chosen: str | None
 ) -> None:
     asking = Asking()
@@ -68,7 +68,9 @@ async def test_letters_filter_enter_takes_and_esc_goes_back(
         await until(lambda: asking.answers == [chosen])
 
 
-async def test_the_word_stop_is_no_filter(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_typing_stop_stops_instead_of_filtering(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asking, stops = Asking(), list[str]()
     async with run(asking) as pilot:
         await until_shown(pilot, lambda: "letters filter" in pilot.text())
@@ -80,7 +82,7 @@ async def test_the_word_stop_is_no_filter(run: Run, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("typed", ["oscar", "oscar\r", "\x1b[200~oscar\x1b[201~"])
-async def test_letters_that_arrive_together_filter_and_enter_among_them_takes_nothing(
+async def test_pasted_letters_filter_and_a_pasted_enter_chooses_nothing(
     run: Run, typed: str
 ) -> None:
     asking = Asking()

@@ -53,7 +53,7 @@ class ListScreen(TangyScreen[None]):
 
 
 @pytest.mark.parametrize("make", [transcript, log, choices, policy, page])
-async def test_only_lines_with_all_the_words_are_shown(run: Run, make: type) -> None:
+async def test_the_filter_keeps_lines_with_all_its_words(run: Run, make: type) -> None:
     panel = make()
     screen = ListScreen()
     async with run(screen) as pilot:
@@ -73,7 +73,7 @@ async def test_only_lines_with_all_the_words_are_shown(run: Run, make: type) -> 
         assert all(word in pilot.text() for word in WORDS)
 
 
-async def test_what_is_chosen_in_a_filtered_list_is_what_it_was(run: Run) -> None:
+async def test_choosing_in_a_filtered_list_returns_the_original_item(run: Run) -> None:
     table, steps = policy(), transcript()
     screen = ListScreen()
     async with run(screen) as pilot:

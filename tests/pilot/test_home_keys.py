@@ -1,4 +1,4 @@
-"""From home one thing is opened at a time, however fast the keys come."""
+"""Home opens one screen at a time, however fast the keys arrive."""
 
 from __future__ import annotations
 
@@ -27,9 +27,7 @@ from tests.support.waiting import until_shown
 
 @pytest.mark.slow
 @pytest.mark.parametrize("keys", ["tt", "gg", "ee", "ii", "tgiep", "dd", "de"])
-async def test_a_key_that_comes_twice_opens_one_screen(
-    keys: str, run: Run, workspace: Workspace
-) -> None:
+async def test_a_repeated_key_opens_one_screen(keys: str, run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         pilot.type(*(key for letter in keys for key in (letter, "enter")))
         for _ in range(4):
@@ -39,7 +37,7 @@ async def test_a_key_that_comes_twice_opens_one_screen(
 
 
 @pytest.mark.slow
-async def test_two_keys_make_one_demonstration(run: Run, workspace: Workspace) -> None:
+async def test_a_repeated_enter_begins_one_demonstration(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         pilot.type("t", "enter", "enter")
         await pilot.pause()
@@ -66,7 +64,7 @@ async def test_stop_at_home_says_that_nothing_moves(
 
 
 @pytest.mark.slow
-async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
+async def test_v_asks_before_a_live_game_on_the_bench(
     run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep_policy(workspace.store, policy)
@@ -100,13 +98,15 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
 
 
 @pytest.mark.slow
-async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace) -> None:
+async def test_v_needs_a_learnt_policy(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("v", "enter")
         await until_shown(pilot, lambda: "has not learnt" in screen_text(pilot.app))
 
 
-async def test_home_says_what_is_left_out_of_the_log(run: Run, workspace: Workspace) -> None:
+async def test_home_reports_events_that_are_left_out_of_the_log(
+    run: Run, workspace: Workspace
+) -> None:
     store = workspace.store
     append_body(store, "policy learnt", {**POLICY_BODY, "name": "lost"})
     db = store.file.db

@@ -1,4 +1,4 @@
-"""The terminal's own answer proves that what was drawn before has reached it."""
+"""The terminal's answer to a query proves that earlier output has reached it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ REMOTE = TerminalSession(remote=True)
 
 
 class Terminal:
-    """A terminal that answers when it is told to, counting from `base`."""
+    """A terminal that answers on demand, and counts positions from `base`."""
 
     def __init__(self, session: TerminalSession = REMOTE, base: int = 1) -> None:
         self.written: list[str] = []
@@ -35,7 +35,7 @@ class Terminal:
 
 
 @pytest.mark.parametrize("base", [0, 1])
-def test_only_the_answer_to_the_present_question_counts(base: int) -> None:
+def test_only_the_answer_to_the_current_query_counts(base: int) -> None:
     terminal = Terminal(base=base)
     terminal.answer()
     terminal.trip.ask(terminal.seen.append)
@@ -46,7 +46,7 @@ def test_only_the_answer_to_the_present_question_counts(base: int) -> None:
     assert terminal.seen == [pytest.approx(12.0)]
 
 
-def test_places_are_used_once_and_never_in_the_first_line() -> None:
+def test_query_positions_are_unique_and_never_in_the_first_line() -> None:
     terminal = Terminal()
     for _ in range(2000):
         terminal.trip.ask(terminal.seen.append)
@@ -56,7 +56,7 @@ def test_places_are_used_once_and_never_in_the_first_line() -> None:
 
 
 @pytest.mark.parametrize("modifier", range(2, 9))
-def test_shift_f3_answers_nothing_whatever_place_waits(modifier: int) -> None:
+def test_shift_f3_is_never_taken_for_an_answer(modifier: int) -> None:
     terminal = Terminal()
     for _ in range(2000):  # every place was the one that waits
         terminal.trip.ask(terminal.seen.append)
@@ -66,7 +66,7 @@ def test_shift_f3_answers_nothing_whatever_place_waits(modifier: int) -> None:
     assert terminal.trip.yes in "456789"
 
 
-def test_a_held_up_answer_leaves_less_time_to_read_because_it_was_seen_earlier() -> None:
+def test_a_delayed_answer_shortens_the_reading_time() -> None:
     terminal = Terminal()
     for trip, margin in ((0.2, READING_SECONDS), (0.25, READING_SECONDS - 0.05), (0.6, 0.0)):
         terminal.trip.ask(terminal.seen.append)
@@ -75,7 +75,7 @@ def test_a_held_up_answer_leaves_less_time_to_read_because_it_was_seen_earlier()
         assert terminal.seen[-1] == pytest.approx(terminal.now + margin)
 
 
-def test_after_a_change_of_size_it_is_asked_again() -> None:
+def test_a_resize_repeats_the_query() -> None:
     terminal = Terminal()
     terminal.trip.ask(terminal.seen.append)
     asked = len(terminal.written)
@@ -85,14 +85,14 @@ def test_after_a_change_of_size_it_is_asked_again() -> None:
     assert len(terminal.seen) == 1
 
 
-def test_a_lost_answer_is_asked_for_again_a_few_times_at_the_most() -> None:
+def test_a_lost_answer_is_requested_again_a_few_times() -> None:
     terminal = Terminal()
     for _ in range(50):
         terminal.trip.ask_again(terminal.seen.append)
     assert sum("6n" in text for text in terminal.written) < 8
 
 
-def test_beside_the_machine_the_yes_is_y_whether_the_terminal_answers_or_not() -> None:
+def test_the_yes_key_of_a_local_terminal_is_y() -> None:
     terminal = Terminal(TerminalSession(multiplexer=True))
     assert not terminal.trip.answers
     assert terminal.trip.yes == "y"
@@ -101,7 +101,7 @@ def test_beside_the_machine_the_yes_is_y_whether_the_terminal_answers_or_not() -
     assert terminal.trip.yes == "y"
 
 
-def test_from_elsewhere_the_yes_is_a_digit_until_the_persons_own_terminal_has_answered() -> None:
+def test_the_yes_key_of_a_remote_terminal_is_a_digit_until_it_answers() -> None:
     terminal = Terminal()
     assert terminal.trip.yes in "456789"
     terminal.answer()
@@ -119,7 +119,7 @@ def test_from_elsewhere_the_yes_is_a_digit_until_the_persons_own_terminal_has_an
         ["a", "\x1b[>84;0;0c", "b"],
     ],
 )
-def test_device_attributes_are_taken_out_of_what_is_typed(
+def test_device_attributes_are_removed_from_the_input(
     chunks: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     heard: list[str] = []

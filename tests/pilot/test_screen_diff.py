@@ -1,4 +1,4 @@
-"""Only what changed is written, and the terminal shows the same as if all had been."""
+"""Differential updates: only changes are written, and the terminal shows the same screen."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def updates(draw: st.DrawFn) -> LayoutUpdate:
 @pytest.mark.slow
 @tried(300)
 @given(st.lists(updates(), min_size=1, max_size=6))
-def test_whatever_is_drawn_is_shown_as_if_everything_had_been_written(
+def test_differential_updates_show_the_same_as_full_updates(
     drawn: list[LayoutUpdate],
 ) -> None:
     console = Console(color_system="truecolor", force_terminal=True)
@@ -110,7 +110,7 @@ def shown(terminal: Terminal, row: int) -> list[Any]:
     ]
 
 
-def test_a_part_of_a_line_is_written_where_it_stands() -> None:
+def test_a_part_of_a_line_is_written_at_its_place() -> None:
     console = Console(color_system="truecolor", force_terminal=True)
     whole, changed, diff = Terminal(WIDTH, HEIGHT), Terminal(WIDTH, HEIGHT), ScreenDiff()
     first = [{0: Strip([Segment("one two ")]), 8: Strip([Segment("three four")])}]
@@ -122,7 +122,7 @@ def test_a_part_of_a_line_is_written_where_it_stands() -> None:
         assert changed.cells() == whole.cells()
 
 
-def test_what_is_forgotten_is_written_again() -> None:
+def test_a_reset_writes_everything_again() -> None:
     console, diff = Console(color_system="truecolor", force_terminal=True), ScreenDiff()
     update = LayoutUpdate([[Strip([Segment("again")])]], Region(0, 0, 5, 1))
     once = diff.difference(update, console)
@@ -132,7 +132,7 @@ def test_what_is_forgotten_is_written_again() -> None:
     assert diff.difference(update, console) == once
 
 
-def test_a_colour_that_is_left_out_and_a_default_one_are_the_same() -> None:
+def test_an_omitted_colour_equals_the_default_colour() -> None:
     console, terminal = Console(color_system="standard", force_terminal=True), Terminal(WIDTH, 1)
     left_out = Segment("one", Style(reverse=True))
     default = Segment("two", Style(reverse=True, color="default", bgcolor="default"))
@@ -141,7 +141,7 @@ def test_a_colour_that_is_left_out_and_a_default_one_are_the_same() -> None:
     assert [cell.reverse for cell in terminal.screen.buffer[0].values()] == [True] * 6
 
 
-def test_one_letter_costs_no_more_than_a_move_and_a_letter() -> None:
+def test_one_changed_letter_costs_a_move_and_a_letter() -> None:
     console, diff = Console(color_system="truecolor", force_terminal=True), ScreenDiff()
     ink = Style(color="#102030", bgcolor="#a0b0c0")
 
@@ -155,7 +155,7 @@ def test_one_letter_costs_no_more_than_a_move_and_a_letter() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
-async def test_a_taught_game_is_shown_as_if_everything_had_been_written(
+async def test_a_taught_game_looks_the_same_with_differential_updates(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch, size: tuple[int, int]
 ) -> None:
     whole, changed, diff = Terminal(*size), Terminal(*size), ScreenDiff()

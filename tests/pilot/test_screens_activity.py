@@ -1,4 +1,4 @@
-"""At home another activity is chosen; what is taught and played from then on is that one."""
+"""Choosing another activity at home for teaching and playing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.support.waiting import until_shown
 
 
 @pytest.mark.slow
-async def test_a_chooses_the_activity_and_teaching_follows(run: Run, workspace: Workspace) -> None:
+async def test_a_chooses_the_activity_for_teaching(run: Run, workspace: Workspace) -> None:
     title = declared("trivia").title
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("a", "enter")
@@ -38,7 +38,7 @@ async def test_a_chooses_the_activity_and_teaching_follows(run: Run, workspace: 
         await until_shown(pilot, lambda: f"teach: {title}" in screen_text(pilot.app))
 
 
-async def test_esc_leaves_the_activity_as_it_is(run: Run, workspace: Workspace) -> None:
+async def test_esc_keeps_the_activity(run: Run, workspace: Workspace) -> None:
     before = workspace.activity.name
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("a", "enter")
@@ -48,7 +48,9 @@ async def test_esc_leaves_the_activity_as_it_is(run: Run, workspace: Workspace) 
         assert workspace.activity.name == before
 
 
-def test_the_choice_says_for_whom_an_activity_is_and_what_it_needs(workspace: Workspace) -> None:
+def test_the_choice_lists_group_size_duration_and_needs_of_an_activity(
+    workspace: Workspace,
+) -> None:
     notes = {word: note for word, _, note in choices(workspace)}
     assert set(notes) >= {*DECLARED, workspace.activity.name}
     assert all("minutes" in note and ";" in note for note in notes.values())

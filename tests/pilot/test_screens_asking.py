@@ -1,4 +1,4 @@
-"""Asking in place: the game waits for an answer, learns it, and goes on; walked with keys."""
+"""Questions in a game: it waits for an answer, learns it, and continues; driven with keys."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ async def over(pilot: TangyPilot, screen: PlayScreen) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
-async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
+async def test_a_question_is_answered_in_place_and_the_game_plays_to_its_end(
     run: Run, workspace: Workspace, gappy: Policy, size: tuple[int, int]
 ) -> None:
     async with run(app=playing(workspace, gappy), size=size) as pilot:
@@ -126,7 +126,7 @@ async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
 
 
 @pytest.mark.slow
-async def test_what_was_learnt_is_said_in_a_message(
+async def test_a_message_says_what_was_learnt(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy, speed=1), notifications=True) as pilot:
@@ -141,7 +141,7 @@ async def test_what_was_learnt_is_said_in_a_message(
 
 
 @pytest.mark.slow
-async def test_what_is_typed_while_tangy_asks_may_be_a_command_as_well(
+async def test_commands_still_work_while_tangy_asks(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -156,7 +156,9 @@ async def test_what_is_typed_while_tangy_asks_may_be_a_command_as_well(
 
 
 @pytest.mark.slow
-async def test_nothing_happens_before_a_yes(run: Run, workspace: Workspace, gappy: Policy) -> None:
+async def test_nothing_is_executed_before_a_yes(
+    run: Run, workspace: Workspace, gappy: Policy
+) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         before = list(workspace.store.events())
@@ -176,7 +178,7 @@ async def test_nothing_happens_before_a_yes(run: Run, workspace: Workspace, gapp
 
 
 @pytest.mark.slow
-async def test_keys_typed_ahead_answer_nothing(
+async def test_keys_typed_ahead_do_not_answer_the_question(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy, speed=1)) as pilot:
@@ -194,7 +196,7 @@ async def test_keys_typed_ahead_answer_nothing(
 
 
 @pytest.mark.slow
-async def test_words_that_mean_nothing_are_given_back(
+async def test_unknown_words_stay_in_the_line(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -206,7 +208,7 @@ async def test_words_that_mean_nothing_are_given_back(
 
 
 @pytest.mark.slow
-async def test_why_it_asks_is_told_by_word_and_by_key(
+async def test_the_reason_for_a_question_opens_by_word_and_by_key(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -224,7 +226,7 @@ async def test_why_it_asks_is_told_by_word_and_by_key(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("way", ["word", "key"])
-async def test_the_game_is_given_up_on_purpose(
+async def test_a_game_can_be_abandoned_at_a_question(
     run: Run, workspace: Workspace, gappy: Policy, way: str
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -256,7 +258,7 @@ async def test_the_game_is_given_up_on_purpose(
 
 
 @pytest.mark.slow
-async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
+async def test_a_stop_holds_the_answer_until_the_release(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -286,7 +288,7 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("words", ["stop the robot", "Please stop the bingo game!"])
-async def test_a_stop_that_is_typed_for_an_answer_stops(
+async def test_a_stop_typed_as_an_answer_stops(
     run: Run, workspace: Workspace, gappy: Policy, words: str
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -316,7 +318,7 @@ async def test_pausing_while_tangy_asks_pauses_after_the_answer(
 
 
 @pytest.mark.slow
-async def test_demonstrations_that_disagree_are_shown_with_the_question(
+async def test_a_question_lists_contradicting_demonstrations(
     run: Run, workspace: Workspace, cover: Cover
 ) -> None:
     shown = cover("bingo", 1, 4)
@@ -335,7 +337,7 @@ async def test_demonstrations_that_disagree_are_shown_with_the_question(
 
 
 @pytest.mark.slow
-async def test_an_answered_step_says_who_answered(
+async def test_an_answered_step_names_who_answered(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy), size=LARGE) as pilot:
@@ -353,7 +355,7 @@ async def test_an_answered_step_says_who_answered(
 
 
 @pytest.mark.slow
-async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
+async def test_a_failed_write_to_the_log_pauses_the_game_until_a_retry(
     run: Run, workspace: Workspace, gappy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     append = workspace.store.append
@@ -385,7 +387,7 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
 
 
 @pytest.mark.slow
-async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
+async def test_quitting_at_a_question_ends_the_game_in_the_log(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
@@ -398,7 +400,7 @@ async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_asking_looks(
+async def test_the_question_panel_matches_its_snapshot(
     run: Run,
     workspace: Workspace,
     gappy: Policy,

@@ -74,7 +74,7 @@ async def played(pilot: TangyPilot) -> PlayScreen:
 
 
 @pytest.mark.slow
-async def test_an_answer_is_said_asked_about_and_learnt(
+async def test_a_spoken_answer_is_verified_and_learnt(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars()
@@ -97,7 +97,7 @@ async def test_an_answer_is_said_asked_about_and_learnt(
 
 
 @pytest.mark.slow
-async def test_a_game_is_paused_and_goes_on_by_voice(
+async def test_a_game_pauses_and_resumes_by_voice(
     run: Run, workspace: Workspace, whole: Policy
 ) -> None:
     ears = FakeEars(hands_free=True)
@@ -112,7 +112,7 @@ async def test_a_game_is_paused_and_goes_on_by_voice(
 
 
 @pytest.mark.slow
-async def test_the_pace_is_changed_by_voice(run: Run, workspace: Workspace, whole: Policy) -> None:
+async def test_the_pace_changes_by_voice(run: Run, workspace: Workspace, whole: Policy) -> None:
     ears = FakeEars(hands_free=True)
     async with run(app=playing(workspace, whole, ears, speed=1)) as pilot:
         screen = await played(pilot)
@@ -127,7 +127,7 @@ async def test_the_pace_is_changed_by_voice(run: Run, workspace: Workspace, whol
             await pilot.pause(0.02)
 
 
-async def test_after_a_stop_no_voice_lets_the_robot_go_on(
+async def test_no_voice_command_releases_a_stop(
     run: Run, workspace: Workspace, whole: Policy
 ) -> None:
     ears = FakeEars(hands_free=True)
@@ -144,7 +144,7 @@ async def test_after_a_stop_no_voice_lets_the_robot_go_on(
 
 
 @pytest.mark.slow
-async def test_a_spoken_no_leaves_nothing_in_the_line_and_it_listens_again(
+async def test_a_spoken_no_clears_the_line_and_listens_again(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars(hands_free=True, answers=True)
@@ -161,7 +161,7 @@ async def test_a_spoken_no_leaves_nothing_in_the_line_and_it_listens_again(
         assert screen.query_one(AskingPanel).listens
 
 
-async def test_while_nothing_is_asked_only_stop_is_heard(
+async def test_only_stop_is_heard_without_a_question(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars(hands_free=True)
@@ -176,7 +176,7 @@ async def test_while_nothing_is_asked_only_stop_is_heard(
 
 
 @pytest.mark.slow
-async def test_after_a_stop_what_is_said_is_refused_and_does_not_stay_in_the_line(
+async def test_speech_after_a_stop_is_refused_and_leaves_the_line_empty(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars(hands_free=True)
@@ -193,7 +193,7 @@ async def test_after_a_stop_what_is_said_is_refused_and_does_not_stay_in_the_lin
 
 
 @pytest.mark.slow
-async def test_the_phrases_are_shown_where_tangy_asks(
+async def test_the_phrases_open_at_a_question(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy, FakeEars())) as pilot:
@@ -205,7 +205,7 @@ async def test_the_phrases_are_shown_where_tangy_asks(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), (80, 24)], ids=["tiny", "small"])
-async def test_how_asking_with_ears_looks(
+async def test_the_question_panel_with_a_microphone_matches_its_snapshot(
     run: Run,
     workspace: Workspace,
     gappy: Policy,

@@ -1,4 +1,4 @@
-"""Policies compared, chosen and looked at before they are used; walked with keys."""
+"""Comparing, choosing and reviewing policies before use; driven with keys."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ async def compare_teachers(pilot: TangyPilot) -> CompareScreen:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
-async def test_teacher_is_compared_with_teacher(
+async def test_two_teachers_are_compared(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
@@ -105,7 +105,7 @@ async def test_teacher_is_compared_with_teacher(
 
 
 @pytest.mark.slow
-async def test_the_policy_screen_tells_why_and_says_what_is_contested(
+async def test_the_policy_screen_explains_decisions_and_marks_contested_ones(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=LARGE) as pilot:
@@ -126,7 +126,7 @@ async def test_the_policy_screen_tells_why_and_says_what_is_contested(
 
 
 @pytest.mark.slow
-async def test_before_is_compared_with_after_from_the_policy_screen(
+async def test_two_versions_are_compared_from_the_policy_screen(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
@@ -141,7 +141,7 @@ async def test_before_is_compared_with_after_from_the_policy_screen(
 
 
 @pytest.mark.slow
-async def test_an_earlier_policy_can_be_looked_at(run: Run, workspace: Workspace) -> None:
+async def test_an_earlier_policy_can_be_opened(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o", "enter")
         last = await shown(pilot, PolicyScreen)
@@ -165,7 +165,7 @@ def spoil(workspace: Workspace) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("key", "used", "kept"), [("n", 0, 0), ("y", 1, 0), ("1", 1, 1)])
-async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
+async def test_a_mismatching_digest_is_reviewed_before_use(
     run: Run, workspace: Workspace, key: str, used: int, kept: int
 ) -> None:
     spoil(workspace)
@@ -189,7 +189,7 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_comparing_looks(
+async def test_the_comparison_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
@@ -198,7 +198,7 @@ async def test_how_comparing_looks(
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_a_policy_looks(
+async def test_the_policy_screen_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:

@@ -1,4 +1,4 @@
-"""The demo is one screen that tells a story; it can be held, gone through by hand, and left."""
+"""The demo: a story on one screen that can be paused, stepped through, and left."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ async def shown(pilot: TangyPilot, holds: Callable[[DemoScreen], bool]) -> DemoS
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
-async def test_it_tells_six_scenes_on_one_screen_and_ends_with_your_turn(
+async def test_the_demo_shows_six_scenes_on_one_screen(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     async with run(app=program(workspace, pace=1000), size=size) as pilot:
@@ -45,7 +45,7 @@ async def test_it_tells_six_scenes_on_one_screen_and_ends_with_your_turn(
 
 
 @pytest.mark.slow
-async def test_space_holds_it_and_lets_it_go_on(run: Run, workspace: Workspace) -> None:
+async def test_space_pauses_and_resumes_the_demo(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace, pace=1000)) as pilot:
         screen = await shown(pilot, lambda s: s.at >= 0)
         await pilot.press("space")
@@ -57,9 +57,7 @@ async def test_space_holds_it_and_lets_it_go_on(run: Run, workspace: Workspace) 
         await shown(pilot, lambda s: s.at > held)
 
 
-async def test_arrows_go_on_and_back_by_captions_while_it_is_held(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_arrows_step_through_captions_while_paused(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace, pace=0.001)) as pilot:
         screen = await shown(pilot, lambda s: s.at == 0)
         await pilot.press("space")
@@ -76,7 +74,7 @@ async def test_arrows_go_on_and_back_by_captions_while_it_is_held(
         assert screen.at == 0
 
 
-async def test_letters_change_nothing_in_it(run: Run, workspace: Workspace) -> None:
+async def test_letters_change_nothing_in_the_demo(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace, pace=0.001)) as pilot:
         screen = await shown(pilot, lambda s: s.at == 0)
         await pilot.press(*"abcdefghijklnoqrtuwxyz")
@@ -86,7 +84,7 @@ async def test_letters_change_nothing_in_it(run: Run, workspace: Workspace) -> N
 
 
 @pytest.mark.slow
-async def test_escape_leaves_it_and_nothing_of_it_stays(run: Run, workspace: Workspace) -> None:
+async def test_escape_leaves_the_demo_without_a_trace(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("d", "enter")
         await shown(pilot, lambda s: s.at >= 0)

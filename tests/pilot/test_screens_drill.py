@@ -1,4 +1,4 @@
-"""The drill walked with keys: rounds, what was right, leaving half-way, and the score sheet."""
+"""The drill, driven with keys: rounds, correct answers, leaving half-way, and the score sheet."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ async def answer_round(pilot: TangyPilot, drill: Drill) -> None:
 
 @pytest.mark.slow
 @SIZES
-async def test_a_drill_is_walked_to_its_sheet(
+async def test_a_drill_leads_to_its_score_sheet(
     run: Run, make: Callable[..., DrillScreen], workspace: Workspace, size: tuple[int, int]
 ) -> None:
     screen = make(4)
@@ -141,7 +141,7 @@ async def test_a_drill_is_walked_to_its_sheet(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("seed", "wrong"), [(1, False), (1, True)], ids=["right", "wrong"])
-async def test_rounds_as_they_look(
+async def test_drill_rounds_match_their_snapshots(
     run: Run,
     make: Callable[..., DrillScreen],
     clock: StillClock,
@@ -168,7 +168,7 @@ async def test_rounds_as_they_look(
         looks(pilot.app)
 
 
-async def test_leaving_half_way_is_asked_about_and_kept_unfinished(
+async def test_leaving_half_way_asks_and_keeps_an_unfinished_drill(
     run: Run, make: Callable[..., DrillScreen], workspace: Workspace
 ) -> None:
     screen = make(4)
@@ -199,7 +199,7 @@ async def test_leaving_half_way_is_asked_about_and_kept_unfinished(
     assert (len(kept.answered), kept.finished) == (1, False)
 
 
-async def test_leaving_before_anything_was_answered_asks_nothing_and_keeps_nothing(
+async def test_leaving_before_the_first_answer_keeps_nothing(
     run: Run, make: Callable[..., DrillScreen], workspace: Workspace
 ) -> None:
     screen = make(4)
@@ -211,7 +211,7 @@ async def test_leaving_before_anything_was_answered_asks_nothing_and_keeps_nothi
     assert last_sheet(workspace.store) is None
 
 
-async def test_the_program_that_ends_half_way_keeps_what_was_answered(
+async def test_quitting_half_way_keeps_the_answers(
     run: Run, make: Callable[..., DrillScreen], workspace: Workspace
 ) -> None:
     screen = make(4)
@@ -248,7 +248,7 @@ async def test_keys_typed_ahead_do_not_answer(
         assert asked(drill) in ("", "clear")
 
 
-async def test_other_keys_do_nothing_and_help_helps(
+async def test_other_keys_do_nothing_and_help_opens(
     run: Run, make: Callable[..., DrillScreen]
 ) -> None:
     screen = make(4)
@@ -274,15 +274,13 @@ async def test_other_keys_do_nothing_and_help_helps(
         assert on_top(pilot, screen)
 
 
-async def test_a_note_is_told_before_it_begins(run: Run, make: Callable[..., DrillScreen]) -> None:
+async def test_a_note_is_shown_before_the_drill(run: Run, make: Callable[..., DrillScreen]) -> None:
     async with run(make(1, 1, "nothing learnt")) as pilot:
         assert "Tangy has learnt nothing yet" in pilot.text()
 
 
 @pytest.mark.slow
-async def test_it_is_opened_from_home_and_its_score_is_told_there(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_home_opens_the_drill_and_shows_its_score(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         assert "what to do when things go wrong" in pilot.text()
         await pilot.press("r", "enter")
@@ -304,7 +302,7 @@ async def test_it_is_opened_from_home_and_its_score_is_told_there(
         assert f"last: {points} of {points} points" in pilot.text()
 
 
-async def test_an_interrupted_drill_is_offered_and_goes_on(run: Run, workspace: Workspace) -> None:
+async def test_an_interrupted_drill_is_offered_and_resumed(run: Run, workspace: Workspace) -> None:
     right = AnsweredRound(1, "", "Nothing was wrong", "continue", (), "", "continue", 2.0)
     sheet = Sheet(workspace.teacher, workspace.activity.name, 3, 2, (right,))
     workspace.store.append(DrillAnswered(sheet=sheet))
@@ -328,7 +326,9 @@ async def test_an_interrupted_drill_is_offered_and_goes_on(run: Run, workspace: 
     assert kept is not None and kept.finished
 
 
-def test_what_is_shown_for_a_drill_is_not_kept(workspace: Workspace, learnt: DrillPolicy) -> None:
+def test_the_demonstrations_for_a_drill_are_not_stored(
+    workspace: Workspace, learnt: DrillPolicy
+) -> None:
     assert learnt.note
     store: Store = workspace.store
     assert list(store.events()) == []

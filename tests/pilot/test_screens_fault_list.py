@@ -1,4 +1,4 @@
-"""Banner, list and timeline of faults, and bringing faults about; with keys."""
+"""Banner, list and timeline of faults, and fault injection; driven with keys."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from tests.support.waiting import until_shown
 
 
 @pytest.mark.slow
-async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
+async def test_a_tolerated_fault_stays_in_the_banner_until_it_is_seen(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy, speed=1000)) as pilot:
@@ -62,7 +62,7 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
 
 
 @pytest.mark.slow
-async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
+async def test_a_request_for_help_is_shown_and_spoken(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy, "camera-occluded@2")) as pilot:
@@ -80,7 +80,7 @@ async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, MIDDLE], ids=["tiny", "small", "middle"])
-async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
+async def test_a_recovery_attempt_is_shown_before_its_result(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
@@ -108,7 +108,7 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, MIDDLE], ids=["tiny", "middle"])
-async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
+async def test_the_list_filters_by_words_and_opens_a_fault(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
     async with run(app=playing(workspace, policy, speed=1000), size=size) as pilot:
@@ -152,7 +152,7 @@ async def test_the_list_can_fill_the_screen(run: Run, workspace: Workspace, poli
 
 
 @pytest.mark.parametrize("width", [56, 57, 76, 100])
-def test_the_list_says_what_was_done_last_at_every_width(width: int) -> None:
+def test_the_list_shows_the_last_action_at_every_width(width: int) -> None:
     columns = columns_for(width, 24)
     assert columns.last >= SHORTEST_LAST
     assert columns.name == 24
@@ -184,7 +184,7 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
             assert words in text
 
 
-def test_nothing_heard_is_worded_otherwise_than_an_error() -> None:
+def test_a_silent_device_is_worded_differently_from_a_failed_one() -> None:
     assert status_words(("STALE", "head camera")) == "STALE: no data from the head camera"
     assert status_words(("ERROR", "head camera")) == "ERROR: the head camera failed"
     assert status_words(("OK", "")) == "OK"
@@ -192,7 +192,7 @@ def test_nothing_heard_is_worded_otherwise_than_an_error() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
-async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
+async def test_a_fault_is_injected_and_lifted_by_keys(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
@@ -220,7 +220,7 @@ async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
 
 
 @pytest.mark.slow
-async def test_what_is_still_to_come_can_be_lifted(
+async def test_a_pending_injection_can_be_lifted(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -238,7 +238,7 @@ async def test_what_is_still_to_come_can_be_lifted(
         assert not world.pending_injections
 
 
-async def test_all_kinds_can_be_chosen(run: Run) -> None:
+async def test_every_kind_of_fault_can_be_injected(run: Run) -> None:
     dialog = InjectDialog((), (), dict.fromkeys(KINDS, "") | {"camera-occluded": "Camera covered"})
     async with run(size=SMALL) as pilot:
         pilot.app.push_screen(dialog)

@@ -1,4 +1,4 @@
-"""Faults in the full-screen program: they are looked for all the time, and how they look."""
+"""Faults in the full-screen program: continuous checks, and their appearance."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from tests.support.waiting import until_shown
 
 @pytest.mark.slow
 @pytest.mark.parametrize("at", ["playing", "paused"])
-async def test_a_fault_is_told_at_the_next_look(
+async def test_a_fault_is_reported_at_the_next_look(
     run: Run, workspace: Workspace, policy: Policy, at: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -57,7 +57,7 @@ async def test_a_fault_is_told_at_the_next_look(
 
 
 @pytest.mark.slow
-async def test_nothing_is_written_while_nothing_changes(
+async def test_an_unchanged_state_writes_no_event(
     run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -80,7 +80,7 @@ async def test_nothing_is_written_while_nothing_changes(
 
 
 @pytest.mark.slow
-async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tried_again(
+async def test_a_failed_write_while_looking_pauses_the_game_until_a_retry(
     run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     append = workspace.store.append
@@ -110,7 +110,7 @@ async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tr
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
-async def test_how_standing_still_looks(
+async def test_the_halted_screen_matches_its_snapshot(
     run: Run,
     workspace: Workspace,
     policy: Policy,
@@ -126,7 +126,7 @@ async def test_how_standing_still_looks(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, MIDDLE], ids=["small", "middle"])
-async def test_how_banner_and_list_look(
+async def test_the_fault_banner_and_list_match_their_snapshots(
     run: Run,
     workspace: Workspace,
     policy: Policy,

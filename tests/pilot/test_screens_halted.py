@@ -1,4 +1,4 @@
-"""While Tangy stands still or asks because of a fault: cleared, given up, accepted; with keys."""
+"""Faults that halt the game or ask staff: clearing, giving up, accepting; driven with keys."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from tests.support.waiting import until_shown
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
-async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
+async def test_a_critical_fault_is_cleared_step_by_step(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
@@ -72,7 +72,7 @@ async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
 
 
 @pytest.mark.slow
-async def test_the_dialog_says_what_was_expected_and_observed_and_when(
+async def test_the_dialog_shows_expected_and_observed_values_with_times(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
@@ -88,7 +88,7 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
 
 
 @pytest.mark.slow
-async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
+async def test_the_dialog_reports_the_end_of_the_fault_and_one_call(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -117,7 +117,7 @@ async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
 
 
 @pytest.mark.slow
-async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
+async def test_giving_up_needs_a_confirmation(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -147,7 +147,7 @@ async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["y", "n"])
-async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
+async def test_an_uncleared_fault_blocks_the_next_game(
     run: Run, workspace: Workspace, policy: Policy, key: str
 ) -> None:
     before = workspace.supervision(policy, 5, asks=True, injections=("emergency-stop",))
@@ -176,7 +176,7 @@ async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
 
 
 @pytest.mark.slow
-async def test_stop_works_inside_and_leaves_the_dialog(
+async def test_stop_works_inside_the_dialog_and_keeps_it_open(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -225,7 +225,7 @@ async def test_two_critical_faults_are_cleared_one_after_the_other(
 
 
 @pytest.mark.slow
-async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
+async def test_a_critical_fault_opens_over_the_help(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -242,7 +242,7 @@ async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
 
 
 @pytest.mark.slow
-async def test_leaving_the_program_while_it_is_halted_ends_the_game_in_thesentences(
+async def test_quitting_while_halted_ends_the_game_in_the_log(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -254,9 +254,7 @@ async def test_leaving_the_program_while_it_is_halted_ends_the_game_in_thesenten
 
 
 @pytest.mark.slow
-async def test_skipping_stops_where_tangy_stands_still(
-    run: Run, workspace: Workspace, policy: Policy
-) -> None:
+async def test_skipping_ends_at_a_halt(run: Run, workspace: Workspace, policy: Policy) -> None:
     async with run(app=playing(workspace, policy, "base-stuck")) as pilot:
         screen = game_of(pilot)[0]
         await sure(pilot, "E")
@@ -273,7 +271,7 @@ async def test_skipping_stops_where_tangy_stands_still(
 
 
 @pytest.mark.slow
-async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
+async def test_a_fault_withdraws_a_question_until_it_is_cleared(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy, "no-effect", speed=1000)) as pilot:
@@ -292,7 +290,7 @@ async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
 
 
 @pytest.mark.slow
-async def test_what_was_not_expected_is_accepted_by_word(
+async def test_an_unexpected_effect_is_accepted_by_word(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy, "no-effect", speed=1000)) as pilot:
@@ -309,7 +307,7 @@ async def test_what_was_not_expected_is_accepted_by_word(
 
 
 @pytest.mark.slow
-async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
+async def test_an_unexpected_effect_is_accepted_by_key_but_not_after_a_stop(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy, "no-effect", speed=1000)) as pilot:
@@ -333,7 +331,7 @@ async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
 
 
 @pytest.mark.slow
-async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
+async def test_the_drawn_robot_freezes_at_a_stop_or_fault(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -357,9 +355,7 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
 
 
 @pytest.mark.slow
-async def test_a_step_that_could_not_be_carried_out_is_marked(
-    run: Run, workspace: Workspace, policy: Policy
-) -> None:
+async def test_a_failed_step_is_marked(run: Run, workspace: Workspace, policy: Policy) -> None:
     async with run(app=playing(workspace, policy, "base-stuck")) as pilot:
         screen, game, _ = game_of(pilot)
         await sure(pilot, "E")

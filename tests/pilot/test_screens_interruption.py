@@ -1,4 +1,4 @@
-"""A game that was interrupted is asked about before another begins."""
+"""Tangy asks about an interrupted game before another begins."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ async def asked(pilot: TangyPilot) -> None:
 
 
 @pytest.mark.slow
-async def test_it_goes_on_paused_with_its_steps_counted(interrupted: Workspace, run: Run) -> None:
+async def test_an_interrupted_game_resumes_paused_with_its_steps(
+    interrupted: Workspace, run: Run
+) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)
         await pilot.press("enter")
@@ -65,13 +67,15 @@ async def test_it_goes_on_paused_with_its_steps_counted(interrupted: Workspace, 
     assert len(list(interrupted.store.events(GameBeginning))) == 1
 
 
-async def test_the_first_screen_says_where_it_can_go_on(interrupted: Workspace, run: Run) -> None:
+async def test_home_says_which_game_can_be_resumed(interrupted: Workspace, run: Run) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await until_shown(pilot, lambda: "Play      interrupted after" in pilot.text())
         assert "Live      on the bench" in pilot.text()
 
 
-async def test_it_ends_with_a_report(interrupted: Workspace, run: Run) -> None:
+async def test_an_interrupted_game_can_be_ended_with_a_report(
+    interrupted: Workspace, run: Run
+) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)
         await pilot.press("down", "enter")
@@ -83,7 +87,9 @@ async def test_it_ends_with_a_report(interrupted: Workspace, run: Run) -> None:
 
 
 @pytest.mark.slow
-async def test_it_is_discarded_and_a_new_game_begins(interrupted: Workspace, run: Run) -> None:
+async def test_an_interrupted_game_can_be_discarded_for_a_new_one(
+    interrupted: Workspace, run: Run
+) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)
         await pilot.press("down", "down", "enter")
@@ -91,7 +97,7 @@ async def test_it_is_discarded_and_a_new_game_begins(interrupted: Workspace, run
 
 
 @pytest.mark.slow
-async def test_esc_leaves_it_as_it_is(interrupted: Workspace, run: Run) -> None:
+async def test_esc_keeps_the_interrupted_game(interrupted: Workspace, run: Run) -> None:
     async with run(app=Program(interrupted, clock=StillClock())) as pilot:
         await asked(pilot)
         await pilot.press("escape")
@@ -100,7 +106,7 @@ async def test_esc_leaves_it_as_it_is(interrupted: Workspace, run: Run) -> None:
     assert not list(interrupted.store.events(GameEnding))
 
 
-async def test_somebody_who_has_come_is_added_before_a_live_game_goes_on(
+async def test_a_new_person_can_be_added_before_a_live_game_resumes(
     workspace: Workspace, learnt: Policy, run: Run
 ) -> None:
     world = live_world(workspace, HeldLink())

@@ -1,4 +1,4 @@
-"""The keymap on the screens: no letter changes what is kept, and every key that was set works."""
+"""The keymap on the screens: no letter changes stored data, and every custom key works."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ async def back(pilot: TangyPilot, screen: object) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("opens", [home, teach, library, people, policy, play])
-async def test_no_letter_changes_what_is_kept_whatever_has_the_keys(
+async def test_no_letter_changes_stored_data_on_any_panel(
     run: Run, taught: Workspace, opens: Opens
 ) -> None:
     async with run(app=Program(taught, opens, clock=StillClock()), size=ROOM) as pilot:
@@ -127,9 +127,7 @@ STAFF_SAYS = {"i": "autonomy", "c": "call again", "o": "take over"}
 
 
 @pytest.mark.slow
-async def test_pause_and_step_move_the_simulated_game_and_nothing_else(
-    run: Run, taught: Workspace
-) -> None:
+async def test_the_game_keys_only_move_the_simulated_game(run: Run, taught: Workspace) -> None:
     async with run(app=Program(taught, play, clock=StillClock()), size=ROOM) as pilot:
         await pilot.pause()
         for letter in (*GAME_MOVES, "p"):
@@ -141,7 +139,9 @@ async def test_pause_and_step_move_the_simulated_game_and_nothing_else(
 
 
 @pytest.mark.slow
-async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace) -> None:
+async def test_no_letter_changes_a_live_game_without_a_question(
+    run: Run, taught: Workspace
+) -> None:
     link = HeldLink()
     world = live_world(taught, link)
     async with run(app=live_program(taught, world, learn(taught)), size=ROOM) as pilot:
@@ -170,7 +170,7 @@ async def test_no_letter_changes_a_live_game_unasked(run: Run, taught: Workspace
 
 @pytest.mark.slow
 @pytest.mark.parametrize("opens", [home, library, people, play])
-async def test_pasted_text_runs_nothing_but_a_stop(
+async def test_pasted_text_runs_only_a_stop(
     run: Run, taught: Workspace, opens: Opens, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with run(app=Program(taught, opens, clock=StillClock())) as pilot:
@@ -195,7 +195,7 @@ async def test_pasted_text_runs_nothing_but_a_stop(
             assert app.screen is screen
 
 
-async def test_a_few_keys_that_come_together_are_keys(run: Run, workspace: Workspace) -> None:
+async def test_a_few_simultaneous_characters_count_as_keys(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.pause()
         for message in ReplyParser().feed("e\r"):
@@ -226,7 +226,7 @@ async def test_help_and_palette_list_every_action_of_a_screen(
 CHANGED = {"undo": ("f12",), "learn": ("ctrl+n",), "pause": ("semicolon",), "put_away": ("z",)}
 
 
-async def test_keys_that_were_set_work_and_are_told(run: Run, taught: Workspace) -> None:
+async def test_custom_keys_work_and_are_shown(run: Run, taught: Workspace) -> None:
     program = Program(taught, library, clock=StillClock(), keymap=Keymap(CHANGED))
     async with run(app=program) as pilot:
         await pilot.pause()
@@ -247,9 +247,7 @@ async def test_keys_that_were_set_work_and_are_told(run: Run, taught: Workspace)
         assert len(kept(taught)) == len(deleted) + 1
 
 
-async def test_at_home_a_letter_goes_to_a_line_and_enter_takes_it(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_a_letter_at_home_selects_and_enter_opens(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("t")
         assert isinstance(pilot.app.screen, HomeScreen)
@@ -258,6 +256,6 @@ async def test_at_home_a_letter_goes_to_a_line_and_enter_takes_it(
         assert isinstance(pilot.app.screen, TeachScreen)
 
 
-def test_a_line_takes_no_key_of_what_works_beside_it() -> None:
+def test_actions_beside_a_command_line_use_no_letters() -> None:
     typing = [action for action in ACTIONS if action.with_line]
     assert all(not is_letter(Keymap().keys(a.id)[0]) for a in typing)

@@ -1,4 +1,4 @@
-"""What a screen says of its keys is so: home, its help, and the conflicts at their end."""
+"""Screens list their keys correctly: home, its help, and the conflicts at their end."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ async def test_home_has_a_line_of_keys_and_shows_every_choice(
         assert "leave Tangy" in pilot.text()
 
 
-async def test_the_help_of_home_tells_no_key_that_does_nothing_there(run: Run) -> None:
+async def test_the_help_of_home_lists_only_working_keys(run: Run) -> None:
     async with run(HomeScreen()) as pilot:
         told = dict(help_for(pilot.app.screen).everywhere)
         assert "?" in told
@@ -58,7 +58,7 @@ async def test_the_help_of_home_tells_no_key_that_does_nothing_there(run: Run) -
 
 
 @pytest.mark.slow
-async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
+async def test_the_help_of_a_screen_with_a_command_line_lists_both_modes(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
@@ -79,7 +79,7 @@ async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
         assert "+" in dict(help_for(pilot.app.screen).everywhere)
 
 
-async def test_when_all_conflicts_were_looked_at_the_keys_are_those_that_are_left(
+async def test_the_key_line_after_the_last_conflict_lists_the_remaining_keys(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:

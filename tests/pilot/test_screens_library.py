@@ -1,4 +1,4 @@
-"""The library of demonstrations and its conflicts, walked with keys as a teacher would."""
+"""The library of demonstrations and its conflicts, driven with keys."""
 
 from __future__ import annotations
 
@@ -107,9 +107,7 @@ async def wait_for(pilot: TangyPilot, kind: type[object]) -> None:
 
 
 @pytest.mark.slow
-async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_the_list_shows_teachers_and_notes(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "enter")
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
@@ -124,7 +122,7 @@ async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
 
 
 @pytest.mark.slow
-async def test_deleting_is_asked_about_and_restored_by_the_same_key(
+async def test_one_key_deletes_after_a_question_and_restores(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -140,7 +138,7 @@ async def test_deleting_is_asked_about_and_restored_by_the_same_key(
 
 
 @pytest.mark.slow
-async def test_changes_are_undone_and_done_again_in_order(run: Run, workspace: Workspace) -> None:
+async def test_changes_are_undone_and_redone_in_order(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "x", "y", "down", "x", "y")
         assert states(workspace) == ["deleted", "deleted", ""]
@@ -155,7 +153,9 @@ async def test_changes_are_undone_and_done_again_in_order(run: Run, workspace: W
 
 
 @pytest.mark.slow
-async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, workspace: Workspace) -> None:
+async def test_marked_demonstrations_are_merged_and_the_merge_undone(
+    run: Run, workspace: Workspace
+) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "asterisk", "M")
         assert "Mark two or more" in told(pilot)
@@ -171,7 +171,9 @@ async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, workspace:
 
 
 @pytest.mark.slow
-async def test_one_is_split_after_the_chosen_step(run: Run, workspace: Workspace) -> None:
+async def test_a_demonstration_is_split_after_the_chosen_step(
+    run: Run, workspace: Workspace
+) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "S")
         assert "Choose the step that ends the first part" in told(pilot)
@@ -181,7 +183,7 @@ async def test_one_is_split_after_the_chosen_step(run: Run, workspace: Workspace
         assert len(first.steps) == 2
 
 
-async def test_an_unfinished_one_cannot_be_merged_and_says_why(
+async def test_merging_an_unfinished_demonstration_is_refused_with_the_reason(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
@@ -195,7 +197,7 @@ async def test_an_unfinished_one_cannot_be_merged_and_says_why(
         assert states(workspace) == ["", "", ""]
 
 
-async def test_after_its_last_step_nothing_is_split_off(run: Run, workspace: Workspace) -> None:
+async def test_a_split_after_the_last_step_is_refused(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "tab")
         steps = pilot.app.screen.query_one(Transcript)
@@ -206,9 +208,7 @@ async def test_after_its_last_step_nothing_is_split_off(run: Run, workspace: Wor
 
 
 @pytest.mark.slow
-async def test_what_was_made_and_taken_back_is_not_in_the_list(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_an_undone_merge_is_not_listed(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "enter", "asterisk", "down", "asterisk", "M", "y", "f2")
         assert states(workspace) == ["", "", "", "undone"]
@@ -219,9 +219,7 @@ async def test_what_was_made_and_taken_back_is_not_in_the_list(
 
 
 @pytest.mark.slow
-async def test_a_screen_that_is_left_takes_its_messages_along(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_leaving_a_screen_removes_its_messages(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "x", "y")
         assert told(pilot)
@@ -232,7 +230,7 @@ async def test_a_screen_that_is_left_takes_its_messages_along(
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
-async def test_the_way_out_and_the_help_are_always_in_the_key_line(
+async def test_the_key_line_always_lists_the_exit_and_the_help(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
@@ -242,7 +240,7 @@ async def test_the_way_out_and_the_help_are_always_in_the_key_line(
 
 
 @pytest.mark.slow
-async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> None:
+async def test_notes_fit_into_the_list(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace), size=LARGE) as pilot:
         await press(pilot, "i", "enter")
         for width in range(85, 161, 5):
@@ -266,7 +264,7 @@ async def test_a_demonstration_opens_at_the_chosen_step(run: Run, workspace: Wor
 
 
 @pytest.mark.slow
-async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path: Path) -> None:
+async def test_a_demonstration_is_shown_again_from_a_step(run: Run, tmp_path: Path) -> None:
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 
     workspace = Workspace(tmp_path / "own")
@@ -292,7 +290,7 @@ async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path
 
 
 @pytest.mark.slow
-async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
+async def test_a_step_opened_while_teaching_goes_back_in_that_session(
     run: Run, tmp_path: Path
 ) -> None:
     workspace = Workspace(tmp_path / "own")
@@ -318,7 +316,7 @@ async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
 
 
 @pytest.mark.slow
-async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_says(
+async def test_learning_shows_conflicts_first_and_uses_the_answers(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -341,7 +339,7 @@ async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_say
 
 
 @pytest.mark.slow
-async def test_what_is_left_open_is_asked_about_in_games(run: Run, workspace: Workspace) -> None:
+async def test_open_conflicts_are_asked_about_in_games(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "enter", "escape")
         assert "Left open: 1; Tangy will ask" in pilot.text()
@@ -353,9 +351,7 @@ async def test_what_is_left_open_is_asked_about_in_games(run: Run, workspace: Wo
 
 
 @pytest.mark.slow
-async def test_answers_are_taken_back_and_learning_can_be_left(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_answers_can_be_undone_and_learning_left(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "enter", "1")
         assert len(library_of(workspace).resolutions) == 1
@@ -370,7 +366,7 @@ async def test_answers_are_taken_back_and_learning_can_be_left(
 
 
 @pytest.mark.slow
-async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> None:
+async def test_a_third_behaviour_can_be_the_right_one(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "enter", "O")
         assert isinstance(pilot.app.screen, WordsDialog)
@@ -379,7 +375,7 @@ async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> No
 
 
 @pytest.mark.slow
-async def test_a_step_of_an_answer_opens_in_its_demonstration(
+async def test_a_step_of_a_conflict_opens_in_its_demonstration(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -393,7 +389,7 @@ async def test_a_step_of_an_answer_opens_in_its_demonstration(
         assert "Which is right?" in pilot.text()
 
 
-async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
+async def test_a_key_typed_before_the_conflict_appears_resolves_nothing(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -408,7 +404,7 @@ async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
 
 
 @SIZES
-async def test_how_the_list_looks(
+async def test_the_list_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
@@ -418,7 +414,7 @@ async def test_how_the_list_looks(
 
 @pytest.mark.slow
 @SIZES
-async def test_how_a_demonstration_looks(
+async def test_a_demonstration_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
@@ -427,7 +423,7 @@ async def test_how_a_demonstration_looks(
 
 
 @SIZES
-async def test_how_a_conflict_looks(
+async def test_a_conflict_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
@@ -435,7 +431,7 @@ async def test_how_a_conflict_looks(
         looks(pilot.app)
 
 
-async def test_how_settled_conflicts_look(
+async def test_resolved_conflicts_match_their_snapshot(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -444,7 +440,7 @@ async def test_how_settled_conflicts_look(
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL])
-async def test_it_can_be_read_in_ascii_and_in_little_room(
+async def test_the_library_is_readable_in_ascii_and_in_a_small_window(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     app = Program(workspace, clock=StillClock(), kind=TerminalKind(ascii=True, ansi=True))

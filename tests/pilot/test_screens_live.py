@@ -1,4 +1,4 @@
-"""The live screen: what is seen of a robot that is there, and how staff step in."""
+"""The live screen: the view of the robot, and the interventions of staff."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ async def asked_about_the_next(pilot: TangyPilot) -> None:
 
 
 @pytest.mark.slow
-async def test_staff_see_where_the_robot_is_and_where_it_goes(
+async def test_the_room_shows_the_robot_and_its_goal(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
@@ -80,7 +80,7 @@ async def test_staff_see_where_the_robot_is_and_where_it_goes(
         assert "·" in shown
 
 
-async def test_staff_see_where_tablets_open_the_chest_screen_and_by_which_code(
+async def test_the_screen_shows_the_address_and_code_of_the_chest_screen(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     link.screen, link.code = "http://10.0.0.5:8765/", "1234-5678"
@@ -91,7 +91,7 @@ async def test_staff_see_where_tablets_open_the_chest_screen_and_by_which_code(
         assert link.tablet_page in screen_text(pilot.app)  # however small the window is
 
 
-async def test_where_it_drives_to_is_seen_in_a_small_window(
+async def test_a_small_window_shows_the_goal_of_the_robot(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(80, 24)) as pilot:
@@ -108,7 +108,7 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
 
 
 @pytest.mark.slow
-async def test_staff_are_told_at_once_that_a_command_has_to_wait_and_then_what_came_of_it(
+async def test_a_waiting_command_is_reported_at_once_and_with_its_result(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(80, 24), notifications=True) as pilot:
@@ -123,7 +123,7 @@ async def test_staff_are_told_at_once_that_a_command_has_to_wait_and_then_what_c
         await until_shown(pilot, lambda: "Card 2 does not win" in screen_text(pilot.app))
 
 
-async def test_the_pace_is_told_once_however_often_a_key_changes_it(
+async def test_repeated_pace_keys_log_one_sentence(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -137,7 +137,7 @@ async def test_the_pace_is_told_once_however_often_a_key_changes_it(
 
 
 @pytest.mark.slow
-async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
+async def test_a_lost_robot_is_shown_as_looking_round(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     well = link.state.health
@@ -161,7 +161,7 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("hands_free", [True, False])
-async def test_a_stop_that_is_said_goes_to_the_robot_itself(
+async def test_a_spoken_stop_reaches_the_robot(
     run: Run,
     workspace: Workspace,
     world: LiveWorld,
@@ -189,7 +189,7 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
 
 
 @pytest.mark.slow
-async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
+async def test_stop_reaches_the_robot_and_p_releases_it(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
@@ -205,7 +205,7 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
 
 
 @pytest.mark.slow
-async def test_who_stops_the_robot_from_another_console_is_seen_on_a_small_screen(
+async def test_a_small_screen_names_who_stopped_the_robot_elsewhere(
     run: Run, program: Program, workspace: Workspace
 ) -> None:
     async with run(app=program, size=SMALL, notifications=True) as pilot:
@@ -219,7 +219,7 @@ async def test_who_stops_the_robot_from_another_console_is_seen_on_a_small_scree
 
 
 @pytest.mark.slow
-async def test_each_stop_is_logged_once_and_told_once(
+async def test_each_stop_is_logged_and_reported_once(
     run: Run, program: Program, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
@@ -236,7 +236,7 @@ async def test_each_stop_is_logged_once_and_told_once(
 
 
 @pytest.mark.slow
-async def test_staff_can_ask_for_help_for_somebody(
+async def test_staff_can_request_help_for_a_person(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
     link.cards["user2"] = LaidCard(7)
@@ -251,7 +251,7 @@ async def test_staff_can_ask_for_help_for_somebody(
 
 
 @pytest.mark.slow
-async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that_is_over(
+async def test_the_log_reports_a_swapped_seat_once_and_its_end(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
     world.knows_faces = True
@@ -273,7 +273,7 @@ async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that
 
 
 @pytest.mark.slow
-async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
+async def test_staff_and_requests_can_interrupt_the_wait_between_calls(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
     world.pace = 30.0
@@ -291,7 +291,7 @@ async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
 
 
 @pytest.mark.slow
-async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:
+async def test_the_lowest_autonomy_asks_staff_before_every_step(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("i", "i")
@@ -305,7 +305,7 @@ async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Pro
 
 
 @pytest.mark.slow
-async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
+async def test_a_yes_does_not_count_for_a_changed_question(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
     link.cards["user2"] = LaidCard(7)
@@ -328,7 +328,7 @@ async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
 
 
 @pytest.mark.slow
-async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> None:
+async def test_staff_can_choose_the_next_behaviour(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
@@ -337,9 +337,7 @@ async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> No
 
 
 @pytest.mark.slow
-async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
-    run: Run, program: Program
-) -> None:
+async def test_esc_returns_the_choice_to_tangy(run: Run, program: Program) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
@@ -355,7 +353,7 @@ async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
 
 
 @pytest.mark.slow
-async def test_stop_typed_where_letters_are_keys_stops_and_the_rest_is_no_keys(
+async def test_typing_stop_stops_and_swallows_the_rest_of_the_sentence(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
@@ -379,7 +377,7 @@ async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLin
 
 
 @pytest.mark.slow
-async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
+async def test_the_driving_dialog_explains_the_safety_limits(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(80, 24)) as pilot:
@@ -404,7 +402,7 @@ async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
 
 
 @pytest.mark.slow
-async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
+async def test_a_frozen_robot_is_reported_and_logged_once(
     run: Run, program: Program, link: HeldLink, workspace: Workspace
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -417,7 +415,7 @@ async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
 
 
 @pytest.mark.slow
-async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
+async def test_p_releases_a_frozen_robot_after_a_game(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -432,7 +430,7 @@ async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
 
 
 @pytest.mark.slow
-async def test_a_call_is_said_again_and_taken_back(
+async def test_a_call_is_repeated_and_taken_back(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
@@ -457,7 +455,7 @@ async def test_a_call_is_said_again_and_taken_back(
 
 
 @pytest.mark.slow
-async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(
+async def test_the_screen_shows_its_heartbeat_under_dialogs(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
@@ -471,7 +469,7 @@ async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(
             await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
 
 
-async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Program) -> None:
+async def test_keys_of_simulated_games_are_absent(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
         for action in ("one_step", "skip"):
@@ -479,7 +477,7 @@ async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Pro
 
 
 @pytest.mark.slow
-async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
+async def test_the_live_picture_in_the_readme_is_current(
     run: Run, program: Program, link: HeldLink, draw: Callable[[App[None]], str]
 ) -> None:
     kept = Path(__file__).parent / "pictures" / "live.svg"

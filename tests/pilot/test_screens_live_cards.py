@@ -1,4 +1,4 @@
-"""Whose card is whose, on the live screen: staff are told at once, and can say it."""
+"""Owners of cards on the live screen: doubts are reported at once, and staff assign cards."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ async def shown(pilot: TangyPilot, text: str) -> None:
 
 
 @pytest.mark.slow
-async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
+async def test_two_cards_are_reported_to_staff_without_a_word_on_marks(
     run: Run, program: Program, link: HeldLink, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
@@ -74,7 +74,7 @@ async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
 
 
 @pytest.mark.slow
-async def test_staff_say_whose_a_card_is(
+async def test_staff_can_assign_a_card(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
 ) -> None:
     world.cards.dealt.deal({"user1": 17, "user2": 31})
@@ -100,7 +100,7 @@ async def test_staff_say_whose_a_card_is(
 
 
 @pytest.mark.slow
-async def test_staff_let_tangy_learn_a_card_anew(
+async def test_staff_can_let_tangy_learn_a_card_again(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:
     world.cards.dealt.deal({"user1": 17})

@@ -1,4 +1,4 @@
-"""While a robot among people stands still because of a fault: what takes its time, and STOP."""
+"""A live robot halted by a fault: slow recoveries keep the screen responsive, and STOP works."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class HeldWorld(LiveWorld):
-    """A world in which nothing is done about a fault before the robot is let."""
+    """A world whose recoveries wait until the test lets the robot act."""
 
     def recover(self, remedy: Remedy) -> float:
         if remedy.kind != "halt":
@@ -78,7 +78,7 @@ async def lives(pilot: TangyPilot, link: HeldLink) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("device", "state"), [("link", STALE), ("navigator", ERROR)])
-async def test_the_screen_lives_while_the_robot_process_is_started_again(
+async def test_the_screen_stays_responsive_while_the_robot_process_restarts(
     run: Run, program: Program, link: HeldLink, device: str, state: DeviceState
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -102,7 +102,7 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
 
 
 @pytest.mark.slow
-async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
+async def test_the_screen_stays_responsive_while_a_fault_is_checked(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -124,7 +124,7 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
 
 
 @pytest.mark.slow
-async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
+async def test_clearing_a_fault_does_not_release_a_stop(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -144,7 +144,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
 
 
 @pytest.mark.slow
-async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
+async def test_a_fault_cleared_under_the_help_closes_with_it(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
@@ -163,7 +163,7 @@ async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
 
 
 @pytest.mark.slow
-async def test_a_lost_link_that_was_a_freeze_is_called_what_it_is_as_soon_as_that_is_known(
+async def test_a_lost_link_is_renamed_when_it_proves_to_be_a_freeze(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
@@ -191,7 +191,7 @@ async def halted_with_an_expert(
     await halting(pilot, link, "stop_button")
 
 
-async def test_the_dialog_says_what_came_of_each_call_and_calls_again_after_one_that_failed(
+async def test_the_dialog_reports_each_call_and_repeats_a_failed_one(
     run: Run,
     program: Program,
     link: HeldLink,
@@ -236,7 +236,7 @@ async def test_the_dialog_says_what_came_of_each_call_and_calls_again_after_one_
     ]
 
 
-async def test_the_dialog_says_who_answered_on_the_chest_screen(
+async def test_the_dialog_names_who_answered_on_the_chest_screen(
     run: Run,
     program: Program,
     link: HeldLink,
@@ -268,7 +268,7 @@ async def test_the_dialog_says_who_answered_on_the_chest_screen(
 
 
 @pytest.mark.slow
-async def test_the_screen_lives_while_the_first_news_of_a_call_is_waited_for(
+async def test_the_screen_stays_responsive_while_a_call_is_pending(
     run: Run,
     program: Program,
     link: HeldLink,

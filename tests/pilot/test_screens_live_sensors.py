@@ -1,4 +1,4 @@
-"""The devices of a robot that is there, on a screen: what its process says, sees and has read."""
+"""The devices of a live robot on a screen: readings, camera picture and the last card."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def row(pilot: TangyPilot, label: str) -> str:
 
 
 @pytest.mark.slow
-async def test_7_shows_the_devices_of_the_robot_and_none_as_simulated(
+async def test_key_7_shows_the_devices_of_the_robot(
     run: Run, workspace: Workspace, policy: Policy, link: SeeingLink
 ) -> None:
     program = live_program(workspace, live_world(workspace, link), policy)
@@ -123,9 +123,7 @@ async def test_7_shows_the_devices_of_the_robot_and_none_as_simulated(
         assert live(pilot).is_current
 
 
-async def test_a_device_says_where_its_data_comes_from_and_one_without_a_driver_is_not_there(
-    run: Run, make: Callable[[], SensorsScreen]
-) -> None:
+async def test_each_device_names_its_driver(run: Run, make: Callable[[], SensorsScreen]) -> None:
     async with run(make()) as pilot:
         assert "not there" in row(pilot, "arms") and "not there" in row(pilot, "voice")
         assert "on the bench" in pilot.text()
@@ -137,7 +135,7 @@ async def test_a_device_says_where_its_data_comes_from_and_one_without_a_driver_
         await shown(pilot, "No driver in the robot file")
 
 
-async def test_v_shows_what_its_camera_sees(
+async def test_v_shows_the_camera_picture(
     run: Run, make: Callable[[], SensorsScreen], link: SeeingLink
 ) -> None:
     async with run(make()) as pilot:
@@ -169,7 +167,7 @@ async def test_the_last_card_is_drawn_as_the_robot_read_it(
         assert "read 21 s" in pilot.text()
 
 
-async def test_a_robot_process_that_is_silent_is_not_asked_and_that_is_said(
+async def test_a_silent_robot_process_is_reported_and_not_queried(
     run: Run, make: Callable[[], SensorsScreen], link: SeeingLink
 ) -> None:
     async with run(make()) as pilot:
@@ -186,7 +184,9 @@ async def test_a_robot_process_that_is_silent_is_not_asked_and_that_is_said(
         assert link.asked_for == []
 
 
-async def test_whoever_leaves_waits_for_no_answer(sensors: LinkedSensors, link: SeeingLink) -> None:
+async def test_leaving_does_not_wait_for_an_answer(
+    sensors: LinkedSensors, link: SeeingLink
+) -> None:
     link.answers = False
     async with asyncio.timeout(2), sensors:
         await asyncio.sleep(0.05)
@@ -194,7 +194,7 @@ async def test_whoever_leaves_waits_for_no_answer(sensors: LinkedSensors, link: 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, (120, 40)], ids=["small", "large"])
-async def test_how_it_looks(
+async def test_the_live_sensors_match_their_snapshot(
     size: tuple[int, int],
     run: Run,
     make: Callable[[], SensorsScreen],

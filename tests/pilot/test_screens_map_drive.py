@@ -33,7 +33,7 @@ def record(path: Path, scans: int) -> None:
     path.write_text("".join(robot_laser_line(look(SIDES, pose), pose, pose.x) for pose in poses))
 
 
-async def test_the_map_grows_while_somebody_drives(run: Run, tmp_path: Path) -> None:
+async def test_the_map_grows_during_the_drive(run: Run, tmp_path: Path) -> None:
     link, log = HeldLink(), tmp_path / "a-scans.log"
     screen = MapDriveScreen(link, log, "Tangy")  # type: ignore[arg-type]
     async with run(screen) as pilot:
@@ -68,7 +68,7 @@ async def test_one_map_is_drawn_at_a_time(
         await until_shown(pilot, lambda: len(begun) > 2)
 
 
-async def test_the_next_map_waits_for_three_times_the_last_drawing(
+async def test_the_next_map_waits_three_times_as_long_as_the_last_took(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looking, drawing, begun = StillClock(), StillClock(), list[float]()
@@ -94,7 +94,7 @@ async def test_the_next_map_waits_for_three_times_the_last_drawing(
         await until_shown(pilot, lambda: len(begun) == 2)
 
 
-async def test_what_is_near_is_said_and_stop_holds_until_it_is_released(
+async def test_near_obstacles_are_reported_and_a_stop_holds_until_release(
     run: Run, tmp_path: Path
 ) -> None:
     link = HeldLink()
@@ -126,7 +126,7 @@ async def test_enter_asks_before_the_drive_ends(run: Run, tmp_path: Path) -> Non
         await until_shown(pilot, lambda: screen.done)
 
 
-async def test_leaving_with_nothing_recorded_draws_no_map(run: Run, tmp_path: Path) -> None:
+async def test_leaving_without_scans_draws_no_map(run: Run, tmp_path: Path) -> None:
     screen = MapDriveScreen(HeldLink(), tmp_path / "a.log", "Tangy")  # type: ignore[arg-type]
     async with run(screen) as pilot:
         await pilot.press("escape")

@@ -1,4 +1,4 @@
-"""On the first start the program asks who teaches; later it does so only when it is wanted."""
+"""The program asks for the teacher's name on the first start, and later only on request."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def program(workspace: Workspace) -> Program:
 
 
 @pytest.mark.slow
-async def test_the_name_is_asked_on_the_first_start_and_kept(
+async def test_the_first_start_asks_for_the_name_and_stores_it(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -36,7 +36,7 @@ async def test_the_name_is_asked_on_the_first_start_and_kept(
         assert read_profile(workspace.store.folder).name == "Ada"
 
 
-async def test_home_stays_where_the_activity_was_taught_already(
+async def test_home_opens_if_the_activity_was_already_taught(
     run: Run, workspace: Workspace, demonstrate: Callable[[str, int, int], Demonstration]
 ) -> None:
     log_demonstration(workspace.store, demonstrate("bingo", 1, 4))
@@ -47,7 +47,9 @@ async def test_home_stays_where_the_activity_was_taught_already(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
-async def test_it_is_asked_once_and_changed_from_home(run: Run, workspace: Workspace) -> None:
+async def test_the_name_is_asked_once_and_can_be_changed_at_home(
+    run: Run, workspace: Workspace
+) -> None:
     save_profile(workspace.store.folder, TeacherProfile("Ada"))
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
@@ -61,7 +63,7 @@ async def test_it_is_asked_once_and_changed_from_home(run: Run, workspace: Works
         assert workspace.teacher == "Bea"
 
 
-async def test_escape_leaves_it_for_the_next_start(run: Run, workspace: Workspace) -> None:
+async def test_escape_defers_the_question_to_the_next_start(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
         await pilot.press("escape")
@@ -70,7 +72,7 @@ async def test_escape_leaves_it_for_the_next_start(run: Run, workspace: Workspac
         assert read_profile(workspace.store.folder) == TeacherProfile()
 
 
-async def test_a_name_that_cannot_be_kept_is_told(run: Run, workspace: Workspace) -> None:
+async def test_an_invalid_name_is_reported(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
         await pilot.press("backspace", "enter")
@@ -79,7 +81,7 @@ async def test_a_name_that_cannot_be_kept_is_told(run: Run, workspace: Workspace
         assert pilot.app.screen.query_one(".wrong").has_class("-shown")
 
 
-async def test_keys_that_were_typed_ahead_are_no_name(run: Run, workspace: Workspace) -> None:
+async def test_keys_typed_ahead_are_no_name(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, NameDialog))
         line = pilot.app.screen.query_one(Input)
@@ -92,9 +94,7 @@ async def test_keys_that_were_typed_ahead_are_no_name(run: Run, workspace: Works
         await until_shown(pilot, lambda: read_profile(workspace.store.folder).name == "Ada")
 
 
-async def test_nothing_is_seen_or_chosen_behind_the_question_before_a_verb(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_the_question_blocks_the_verb_behind_it(run: Run, workspace: Workspace) -> None:
     began: list[str] = []
 
     async def start(program: Program) -> None:

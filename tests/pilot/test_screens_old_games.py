@@ -1,4 +1,4 @@
-"""Old games of which the log does not tell where they were played are asked about, once."""
+"""Tangy asks once where old games were played if the log does not say it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def old(workspace: Workspace) -> None:
     save_profile(workspace.store.folder, TeacherProfile("Ada"))
 
 
-async def test_the_answer_counts_for_all_of_them(workspace: Workspace, run: Run) -> None:
+async def test_one_answer_settles_all_old_games(workspace: Workspace, run: Run) -> None:
     old(workspace)
     async with run(app=Program(workspace, clock=StillClock(), asks_name=True)) as pilot:
         await until(lambda: isinstance(pilot.app.screen, ChooseDialog))
@@ -28,7 +28,7 @@ async def test_the_answer_counts_for_all_of_them(workspace: Workspace, run: Run)
         await until(lambda: GameWorlds(workspace.store).all == {"old": LIVE})
 
 
-async def test_what_nobody_knows_is_not_asked_again(workspace: Workspace, run: Run) -> None:
+async def test_an_unknown_place_is_not_asked_again(workspace: Workspace, run: Run) -> None:
     old(workspace)
     GameWorlds(workspace.store).settle(["old"], UNKNOWN, "Ada")
     async with run(app=Program(workspace, clock=StillClock(), asks_name=True)) as pilot:

@@ -1,4 +1,4 @@
-"""The people screen: what works with whom in words and numbers, and what staff can say about it."""
+"""The people screen: what works with each person in words and numbers, and corrections by staff."""
 
 from __future__ import annotations
 
@@ -79,7 +79,9 @@ def line_with(pilot: TangyPilot, *words: str) -> str:
 # ------------------------------------------------------------------------------ what it says
 
 
-async def test_it_says_in_words_what_works_with_whom(run: Run, workspace: Workspace) -> None:
+async def test_the_screen_says_in_words_what_works_with_each_person(
+    run: Run, workspace: Workspace
+) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         text = pilot.text()
         assert "praise works with Rosa: 7 of 9, last seen 3 weeks ago" in text
@@ -88,7 +90,7 @@ async def test_it_says_in_words_what_works_with_whom(run: Run, workspace: Worksp
         assert "nothing is known of User 4 yet" in text
 
 
-async def test_it_shows_counts_mean_interval_best_and_settled(
+async def test_the_table_shows_counts_mean_interval_best_and_settled(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
@@ -100,9 +102,7 @@ async def test_it_shows_counts_mean_interval_best_and_settled(
         assert "starts with every strategy equal" in pilot.text()
 
 
-async def test_the_history_stands_game_by_game_with_its_times(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_the_history_lists_games_with_their_times(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace), size=LARGE) as pilot:
         history = [line for line in pilot.lines() if "game of" in line]
         assert [line.split("game of ")[1].rstrip(" │┃█▅") for line in history] == [
@@ -126,7 +126,7 @@ async def test_another_person_is_chosen_with_the_arrows(run: Run, workspace: Wor
 
 
 @pytest.mark.slow
-async def test_a_response_is_voided_and_taken_back(run: Run, workspace: Workspace) -> None:
+async def test_a_response_is_voided_and_restored(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "tab", "x")
         await pilot.pause()
@@ -147,7 +147,7 @@ async def test_a_response_is_voided_and_taken_back(run: Run, workspace: Workspac
 
 
 @pytest.mark.slow
-async def test_what_is_void_does_not_void_again_and_can_be_answered(
+async def test_a_void_response_can_be_answered_but_not_voided_again(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace), notifications=True) as pilot:
@@ -206,7 +206,7 @@ async def test_the_last_strategy_stays_on(run: Run, workspace: Workspace) -> Non
 
 
 @pytest.mark.slow
-async def test_another_method_is_chosen_and_the_activitys_again(
+async def test_another_method_is_chosen_and_the_default_restored(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
@@ -233,16 +233,14 @@ async def test_another_method_is_chosen_and_the_activitys_again(
         assert workspace.memory().feedback.method("user1") is None
 
 
-async def test_with_nothing_said_there_is_nothing_to_take_back(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_undo_without_changes_is_refused(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace), notifications=True) as pilot:
         await pilot.press("f2")
         await pilot.pause()
         assert "nothing to take back" in " ".join(pilot.text().split())
 
 
-async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, workspace: Workspace) -> None:
+async def test_the_cursor_keeps_its_place_after_a_change(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "tab", "down", "down")
         await pilot.pause()
@@ -254,7 +252,7 @@ async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, workspace:
         assert pilot.app.screen.focused is history
 
 
-async def test_names_that_look_like_markup_are_only_names(run: Run, workspace: Workspace) -> None:
+async def test_markup_in_names_is_shown_as_text(run: Run, workspace: Workspace) -> None:
     workspace.store.rename("user1", "[/b] {x} [@click=quit]Jo")
     workspace.people = (
         type(workspace.people[0])("user1", "[/b] {x} [@click=quit]Jo"),
@@ -266,7 +264,7 @@ async def test_names_that_look_like_markup_are_only_names(run: Run, workspace: W
         assert "[@click=quit]Jo" in pilot.text()
 
 
-async def test_every_key_is_told_at_80_columns(run: Run, workspace: Workspace) -> None:
+async def test_the_key_line_lists_every_key_at_80_columns(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace), size=SMALL) as pilot:
         keys = pilot.lines()[-1]
         for key in ("tab", "x", "F", "P", "f2", "N", "esc", "?"):
@@ -277,14 +275,14 @@ async def test_every_key_is_told_at_80_columns(run: Run, workspace: Workspace) -
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_it_looks(
+async def test_the_people_screen_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace), size=size) as pilot:
         looks(pilot.app)
 
 
-async def test_how_it_looks_in_the_light_theme_with_a_prior(
+async def test_the_light_theme_with_a_prior_matches_its_snapshot(
     run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
 ) -> None:
     feedback = Feedback(workspace.store)
@@ -298,7 +296,7 @@ async def test_how_it_looks_in_the_light_theme_with_a_prior(
         picture(pilot.app)
 
 
-async def test_how_the_choice_of_a_method_looks(
+async def test_the_choice_of_a_method_matches_its_snapshot(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
@@ -307,7 +305,7 @@ async def test_how_the_choice_of_a_method_looks(
         looks(pilot.app)
 
 
-async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> None:
+async def test_ascii_mode_shows_only_ascii(run: Run, workspace: Workspace) -> None:
     async with run(PeopleScreen(workspace), kind=TerminalKind(ascii=True)) as pilot:
         assert pilot.app._filters[-1].ascii  # type: ignore[attr-defined]
         assert "settled" in pilot.text()
@@ -316,7 +314,7 @@ async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> N
 @pytest.mark.parametrize(
     "keys", [("tab", "tab", "x"), ("down", "F"), ("x",)], ids=["void", "answer", "switch"]
 )
-async def test_how_the_questions_look(
+async def test_the_questions_match_their_snapshots(
     run: Run, workspace: Workspace, keys: tuple[str, ...], looks: Callable[[App[None]], None]
 ) -> None:
     async with run(PeopleScreen(workspace)) as pilot:
@@ -325,7 +323,7 @@ async def test_how_the_questions_look(
         looks(pilot.app)
 
 
-async def test_eight_people_are_reached_where_four_are_seen(run: Run, tmp_path: Path) -> None:
+async def test_eight_people_are_reachable_in_a_list_of_four(run: Run, tmp_path: Path) -> None:
     workspace = Workspace(tmp_path / "eight", users=8, now=lambda: NOW)
     async with run(PeopleScreen(workspace)) as pilot:
         assert "User 8" not in pilot.text()
@@ -337,7 +335,7 @@ async def test_eight_people_are_reached_where_four_are_seen(run: Run, tmp_path: 
 
 
 @pytest.mark.parametrize("size", [(60, 18), (100, 30), (200, 60)])
-async def test_at_every_size_the_chosen_person_is_told_of_in_full(
+async def test_every_size_shows_the_chosen_person_in_full(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     async with run(PeopleScreen(workspace), size=size) as pilot:
@@ -351,7 +349,7 @@ async def test_at_every_size_the_chosen_person_is_told_of_in_full(
 
 
 @pytest.mark.slow
-async def test_a_name_is_heard_and_its_pronunciation_noted(
+async def test_a_pronunciation_is_played_and_stored(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     spoken: list[str] = []
@@ -376,9 +374,7 @@ async def test_a_name_is_heard_and_its_pronunciation_noted(
         assert all("R OW S AH" not in str(event.body) for event in workspace.store.events())
 
 
-async def test_a_pronunciation_that_is_anothers_is_told_and_the_line_stays(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_a_pronunciation_of_another_person_is_refused(run: Run, workspace: Workspace) -> None:
     workspace.rename(workspace.find_person("user2"), "Ann")
     async with run(PeopleScreen(workspace)) as pilot:
         pilot.type("N")

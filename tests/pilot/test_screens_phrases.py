@@ -1,4 +1,4 @@
-"""The phrasebook on a screen: read, searched, heard, and a name's pronunciation edited."""
+"""The phrasebook on a screen: reading, searching, playing, and editing a pronunciation."""
 
 from __future__ import annotations
 
@@ -59,7 +59,9 @@ async def find(pilot: TangyPilot, *keys: str) -> None:
 
 
 @pytest.mark.slow
-async def test_it_shows_behaviours_people_seats_and_words(run: Run, screen: PhrasesScreen) -> None:
+async def test_the_screen_shows_behaviours_people_seats_and_words(
+    run: Run, screen: PhrasesScreen
+) -> None:
     async with run(screen) as pilot:
         await looked_up(pilot)
         assert "greet everyone" in pilot.text()
@@ -76,7 +78,7 @@ async def test_it_shows_behaviours_people_seats_and_words(run: Run, screen: Phra
 
 
 @pytest.mark.slow
-async def test_it_says_what_cannot_be_heard_until_the_name_is_accepted(
+async def test_an_unrecognisable_name_is_marked_until_its_pronunciation_is_accepted(
     run: Run, screen: PhrasesScreen, workspace: Workspace
 ) -> None:
     async with run(screen) as pilot:
@@ -94,7 +96,7 @@ async def test_it_says_what_cannot_be_heard_until_the_name_is_accepted(
         assert suggested in pilot.text()
 
 
-async def test_entries_and_names_are_heard(
+async def test_entries_and_names_are_played(
     run: Run, screen: PhrasesScreen, spoken: list[str]
 ) -> None:
     async with run(screen) as pilot:
@@ -117,7 +119,7 @@ async def test_entries_and_names_are_heard(
 
 
 @pytest.mark.slow
-async def test_an_empty_line_drops_what_was_noted_and_esc_leaves_it(
+async def test_an_empty_line_deletes_the_pronunciation_and_esc_keeps_it(
     run: Run, screen: PhrasesScreen, workspace: Workspace
 ) -> None:
     workspace.pronounce(workspace.people[0], "R AO S AH")
@@ -137,7 +139,7 @@ async def test_an_empty_line_drops_what_was_noted_and_esc_leaves_it(
         assert workspace.find_person("user1").pronunciation is None
 
 
-async def test_what_cannot_be_said_aloud_is_told(run: Run, workspace: Workspace) -> None:
+async def test_a_failed_playback_is_reported(run: Run, workspace: Workspace) -> None:
     async def fails(phones: str) -> None:
         raise TangyError("No sound comes out here.")
 
@@ -151,7 +153,7 @@ async def test_what_cannot_be_said_aloud_is_told(run: Run, workspace: Workspace)
         assert "Choose a person" in pilot.text()
 
 
-async def test_at_the_smallest_size_it_is_drawn(
+async def test_the_smallest_size_matches_its_snapshot(
     run: Run, screen: PhrasesScreen, looks: Callable[[App[Any]], None]
 ) -> None:
     async with run(screen) as pilot:
@@ -160,7 +162,9 @@ async def test_at_the_smallest_size_it_is_drawn(
 
 
 @pytest.mark.slow
-async def test_the_palette_leads_to_it_and_esc_back(run: Run, workspace: Workspace) -> None:
+async def test_the_palette_opens_the_phrases_and_esc_goes_back(
+    run: Run, workspace: Workspace
+) -> None:
     program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:
         await pilot.press("ctrl+p", *"phrases")

@@ -1,4 +1,4 @@
-"""Playing, policy, people, home and the demo: walked with keys, at both sizes."""
+"""Playing, policy, people, home and the demo: driven with keys, at both sizes."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ async def pause_at_once(pilot: Pilot[None]) -> PlayScreen:
 
 
 @pytest.mark.slow
-async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Policy) -> None:
+async def test_the_step_key_plays_one_step(run: Run, workspace: Workspace, policy: Policy) -> None:
     async with run(app=playing(workspace, policy), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         before = screen.query_one(Transcript).count
@@ -82,7 +82,7 @@ async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Poli
 
 
 @pytest.mark.slow
-async def test_what_staff_see_goes_along_with_a_simulated_game(
+async def test_the_staff_panel_follows_a_simulated_game(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy), size=SMALL) as pilot:
@@ -130,7 +130,7 @@ async def test_skipping_plays_the_game_to_its_end(
 
 
 @pytest.mark.slow
-async def test_speed_goes_from_life_to_a_thousand_times(
+async def test_the_speed_ranges_from_real_time_to_a_thousand_times(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -149,7 +149,7 @@ async def test_speed_goes_from_life_to_a_thousand_times(
 
 
 @pytest.mark.slow
-async def test_stop_stops_and_only_a_person_lets_it_go_on(
+async def test_stop_holds_until_a_person_resumes(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -172,7 +172,7 @@ async def test_stop_stops_and_only_a_person_lets_it_go_on(
 
 
 @pytest.mark.slow
-async def test_panels_are_chosen_by_number_where_there_is_no_room(
+async def test_panels_are_chosen_by_number_in_a_small_window(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy), size=SMALL) as pilot:
@@ -189,7 +189,7 @@ async def test_panels_are_chosen_by_number_where_there_is_no_room(
 
 
 @pytest.mark.parametrize("size", [(80, 24), (80, 20)])
-async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
+async def test_the_enlarged_room_fills_the_screen(
     run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
     async with run(app=playing(workspace, policy), size=size) as pilot:
@@ -205,7 +205,7 @@ async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
 
 
 @pytest.mark.slow
-async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
+async def test_an_undemonstrated_situation_ends_the_game_with_the_reason(
     run: Run, untaught: Workspace
 ) -> None:
     teaching = untaught.teaching("ann", 1)
@@ -231,7 +231,7 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_playing_looks(
+async def test_the_play_screen_matches_its_picture(
     run: Run,
     workspace: Workspace,
     policy: Policy,
@@ -246,7 +246,9 @@ async def test_how_playing_looks(
         picture(pilot.app)
 
 
-async def test_the_policy_screen_says_what_was_never_shown(run: Run, untaught: Workspace) -> None:
+async def test_the_policy_screen_marks_undemonstrated_situations(
+    run: Run, untaught: Workspace
+) -> None:
     teaching = untaught.teaching("ann", 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
@@ -291,9 +293,7 @@ async def test_home_leads_everywhere_and_back(
             assert isinstance(pilot.app.screen, HomeScreen), key
 
 
-async def test_playing_before_learning_is_answered_with_what_to_do(
-    run: Run, untaught: Workspace
-) -> None:
+async def test_playing_before_learning_explains_what_to_do(run: Run, untaught: Workspace) -> None:
     async with run(app=Program(untaught, clock=StillClock())) as pilot:
         await pilot.press("p", "enter")
         while not isinstance(pilot.app.screen, MessageDialog):
@@ -327,7 +327,7 @@ async def test_two_letters_at_home_are_one_choice(
 
 
 @pytest.mark.slow
-async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
+async def test_why_explains_the_last_or_the_chosen_step(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -360,7 +360,7 @@ async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
         assert "Leave" not in screen_text(pilot.app)
 
 
-async def test_leaving_in_mid_game_is_asked_and_logged(
+async def test_leaving_during_a_game_asks_and_is_logged(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:

@@ -1,4 +1,4 @@
-"""The ends of games: another one, being left from under a dialog, and what lies over what."""
+"""The ends of games: another game, leaving under a dialog, and overlapping panels."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ async def test_leaving_twice_at_once_leaves_once(
 
 
 @pytest.mark.slow
-async def test_another_game_in_mid_game_is_announced(
+async def test_another_game_can_be_scheduled_during_a_game(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy), notifications=True) as pilot:
@@ -104,7 +104,7 @@ async def test_another_game_in_mid_game_is_announced(
 
 
 @pytest.mark.slow
-async def test_another_game_goes_on_though_the_last_one_was_paused(
+async def test_another_game_starts_running_after_a_paused_one(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -122,7 +122,7 @@ async def test_another_game_goes_on_though_the_last_one_was_paused(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["g", "full_stop", "E"])
-async def test_what_waits_for_the_answer_says_so_in_the_panel(
+async def test_a_key_that_must_wait_for_the_answer_says_so_in_the_panel(
     run: Run, workspace: Workspace, gappy: Policy, key: str
 ) -> None:
     async with run(app=playing(workspace, gappy), notifications=True) as pilot:
@@ -135,7 +135,7 @@ async def test_what_waits_for_the_answer_says_so_in_the_panel(
 
 
 @pytest.mark.slow
-async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
+async def test_the_keys_after_a_stop_show_what_still_works(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy), notifications=True) as pilot:
@@ -155,7 +155,7 @@ async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
         assert "Not now" not in pilot.text()
 
 
-async def test_the_keys_of_a_game_that_stands_still_say_so(
+async def test_the_key_line_of_a_paused_game_shows_how_to_resume(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy), size=SMALL) as pilot:
@@ -168,7 +168,7 @@ async def test_the_keys_of_a_game_that_stands_still_say_so(
 
 
 @pytest.mark.slow
-async def test_nothing_lies_over_a_question(
+async def test_no_message_covers_a_question(
     run: Run, workspace: Workspace, gappy: Policy, tmp_path: Path
 ) -> None:
     async with run(app=playing(workspace, gappy), notifications=True) as pilot:
@@ -189,7 +189,7 @@ async def test_nothing_lies_over_a_question(
         assert "Learnt from ann: " in pilot.text()
 
 
-async def test_help_tells_of_the_panels_and_of_answering(
+async def test_the_help_lists_the_panels_and_how_to_answer(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -201,7 +201,7 @@ async def test_help_tells_of_the_panels_and_of_answering(
 # --------------------------------------------------------------------------- policies to read
 
 
-async def test_what_follows_is_read_from_its_beginning(
+async def test_the_effects_are_shown_from_their_beginning(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async def start(program: Program) -> None:
@@ -214,7 +214,9 @@ async def test_what_follows_is_read_from_its_beginning(
         assert effects.scroll_offset.y == 0
 
 
-def test_one_demonstration_teaches(workspace: Workspace, cover: Cover) -> None:
+def test_a_note_with_one_demonstration_uses_the_singular(
+    workspace: Workspace, cover: Cover
+) -> None:
     log_demonstration(workspace.store, cover("bingo", 1, 4)[0])
     notes = [option.note for option in comparison_options(workspace.store, workspace.activity)]
     assert "what 1 demonstration teaches" in notes

@@ -1,4 +1,4 @@
-"""What was learnt leads on to a game, and Tangy plays by the policy that is looked at."""
+"""The policy screen leads to a game that is played by the shown policy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sensors on a screen: devices in a word, a picture on request, the card as it was read."""
+"""The sensors on a screen: states of devices, a picture on request, the card as read."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def picture(width: int, height: int, red: int = 0) -> Any:
 
 @dataclass
 class FakeSensors:
-    """A head camera and what it reads, as the test says; it counts what is asked of it."""
+    """A head camera with given readings; it counts the requests."""
 
     now: Sight = WELL
     cards: CardSight = field(default_factory=CardSight)
@@ -126,7 +126,7 @@ def row(pilot: TangyPilot, label: str) -> str:
 
 
 @pytest.mark.slow
-async def test_a_camera_is_told_of_in_a_word_with_age_reason_and_since_when(
+async def test_a_camera_is_shown_with_state_age_reason_and_duration(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:
     async with run(make()) as pilot:
@@ -147,9 +147,7 @@ async def test_a_camera_is_told_of_in_a_word_with_age_reason_and_since_when(
         assert "working" in row(pilot, "   head camera")
 
 
-async def test_what_is_simulated_is_said_to_be(
-    run: Run, make: Callable[..., SensorsScreen]
-) -> None:
+async def test_simulated_devices_are_marked(run: Run, make: Callable[..., SensorsScreen]) -> None:
     readings: list[Reading] = []
 
     def health() -> Health:
@@ -178,7 +176,7 @@ async def test_what_is_simulated_is_said_to_be(
         assert STALE not in pilot.text()  # words for staff, none of the code's
 
 
-async def test_how_often_data_comes_stands_beside_how_old_it_is(
+async def test_the_rate_of_data_is_shown_beside_its_age(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:
     sensors.now = replace(WELL, rate=14.6)
@@ -199,7 +197,7 @@ async def test_how_often_data_comes_stands_beside_how_old_it_is(
         assert "Hz" not in rows["voice"]
 
 
-async def test_a_picture_comes_on_request_and_costs_nothing_while_it_is_hidden(
+async def test_a_picture_is_fetched_only_while_it_is_shown(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:
     async with run(make()) as pilot:
@@ -227,7 +225,7 @@ async def test_a_picture_comes_on_request_and_costs_nothing_while_it_is_hidden(
         assert len(sensors.asked) == asked and BLOCK not in pilot.text()
 
 
-async def test_an_enlarged_picture_is_made_for_the_room_there_is(
+async def test_an_enlarged_picture_uses_the_available_space(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
 ) -> None:
     async with run(make()) as pilot:
@@ -242,7 +240,7 @@ async def test_an_enlarged_picture_is_made_for_the_room_there_is(
 
 
 @pytest.mark.parametrize("kind", [TerminalKind(ascii=True), TerminalKind(ansi=True)])
-async def test_without_colours_a_picture_is_drawn_in_shades(
+async def test_a_picture_without_colours_is_drawn_in_shades(
     run: Run, make: Callable[..., SensorsScreen], kind: TerminalKind
 ) -> None:
     async with run(make(), kind=kind) as pilot:
@@ -253,7 +251,7 @@ async def test_without_colours_a_picture_is_drawn_in_shades(
         assert pilot.text().count("@" * width) >= height // 2
 
 
-async def test_only_what_has_changed_of_a_picture_is_drawn(run: Run) -> None:
+async def test_only_the_changed_part_of_a_picture_is_drawn(run: Run) -> None:
     shown = BlockPicture("Picture", "")
     drawn: list[Any] = []
 
@@ -272,7 +270,7 @@ async def test_only_what_has_changed_of_a_picture_is_drawn(run: Run) -> None:
         assert [(region.y, region.width) for region in regions] == [(1 + n, 30) for n in range(4)]
 
 
-async def test_the_last_card_is_drawn_as_it_was_read(
+async def test_the_last_card_is_drawn_as_read(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, workspace: Workspace
 ) -> None:
     async with run(make()) as pilot:
@@ -294,7 +292,7 @@ async def test_the_last_card_is_drawn_as_it_was_read(
         assert "Now: no card in sight." in pilot.text()
 
 
-async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
+async def test_the_cameras_are_open_while_the_screen_is(
     run: Run, workspace: Workspace, sensors: FakeSensors
 ) -> None:
     given: Any = sensors
@@ -313,7 +311,7 @@ async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
     assert sensors.open == 0
 
 
-async def test_without_a_camera_it_says_how_to_name_one(run: Run, workspace: Workspace) -> None:
+async def test_a_missing_camera_is_explained(run: Run, workspace: Workspace) -> None:
     async with run(SensorsScreen(workspace)) as pilot:
         assert "camera=0" in pilot.text()
         pilot.type("V", "enter")
@@ -322,7 +320,7 @@ async def test_without_a_camera_it_says_how_to_name_one(run: Run, workspace: Wor
 
 
 @pytest.mark.slow
-async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
+async def test_a_real_camera_is_used_in_a_game_and_shown_by_key_7(
     run: Run,
     workspace: Workspace,
     policy: Policy,
@@ -359,7 +357,7 @@ async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["small", "large"])
-async def test_how_it_looks(
+async def test_the_sensors_match_their_snapshot(
     size: tuple[int, int],
     run: Run,
     make: Callable[..., SensorsScreen],
@@ -377,7 +375,7 @@ async def test_how_it_looks(
         picture(pilot.app)
 
 
-async def test_in_a_narrow_window_v_leads_to_picture_and_card_and_back(
+async def test_v_switches_to_picture_and_card_in_a_narrow_window(
     run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, workspace: Workspace
 ) -> None:
     sensors.cards = CardSight(card(workspace), "", monotonic())

@@ -1,4 +1,4 @@
-"""The page on which a live game is set up: choices, checks, and nothing that moves before begin."""
+"""The setup page of a live game: choices and checks; nothing moves before the start."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from tests.support.waiting import until_shown
 
 
 class Setting:
-    """A program that opens with the page, and a robot that is switched on when it asks for it."""
+    """A program that opens with the page, and a robot that it can open."""
 
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
@@ -65,7 +65,7 @@ async def opened(pilot: Any) -> None:
 
 
 @pytest.mark.slow
-async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
+async def test_keys_choose_people_patterns_and_seats_without_moving_the_robot(
     run: Run, setting: Setting
 ) -> None:
     async with run(app=setting.program()) as pilot:
@@ -79,7 +79,7 @@ async def test_people_patterns_and_seats_are_chosen_by_keys_and_nothing_moves(
         assert setup.patterns == ["full card"] and setting.link.done == []
 
 
-async def test_how_a_person_is_carried_is_said_while_they_are(run: Run, setting: Setting) -> None:
+async def test_moving_a_person_shows_the_keys_for_it(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         await pilot.press("space", "down")
@@ -89,9 +89,7 @@ async def test_how_a_person_is_carried_is_said_while_they_are(run: Run, setting:
         assert setting.setup.seats[:2] == ["user2", "user1"]
 
 
-async def test_the_line_of_the_cursor_is_marked_and_says_which_keys_change_it(
-    run: Run, setting: Setting
-) -> None:
+async def test_the_current_line_is_marked_and_shows_its_keys(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await pilot.press(*["down"] * (len(setting.setup.seats) + 2))
         await until_shown(
@@ -111,7 +109,7 @@ async def test_every_pattern_is_named_beside_the_room(run: Run, setting: Setting
         assert [one.name for one in patterns if one.name.split()[-1] not in words] == []
 
 
-async def test_begin_switches_on_and_begins(run: Run, setting: Setting) -> None:
+async def test_begin_opens_the_robot_and_starts_the_game(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         await pilot.press("B")
@@ -119,7 +117,7 @@ async def test_begin_switches_on_and_begins(run: Run, setting: Setting) -> None:
         assert setting.setup.world is not None
 
 
-async def test_what_is_not_ready_is_said_before_the_game_begins(run: Run, setting: Setting) -> None:
+async def test_unready_parts_are_reported_before_the_game(run: Run, setting: Setting) -> None:
     setting.link.ail("voice", STALE)
     setting.setup.world = live_world(setting.workspace, setting.link)
     async with run(app=setting.program()) as pilot:
@@ -134,16 +132,14 @@ async def test_what_is_not_ready_is_said_before_the_game_begins(run: Run, settin
         await until_shown(pilot, lambda: setting.begins == [False])
 
 
-def test_a_tablet_that_is_not_there_is_no_fault_of_the_robot(setting: Setting) -> None:
+def test_a_missing_tablet_is_no_fault_of_the_robot(setting: Setting) -> None:
     setting.link.ail("screen", STALE)
     setting.setup.world = live_world(setting.workspace, setting.link)
     robot, *_ = setting.setup.checks()
     assert (robot.name, robot.state) == ("robot", "ready")
 
 
-async def test_a_stop_while_devices_get_ready_calls_the_game_off(
-    run: Run, setting: Setting
-) -> None:
+async def test_a_stop_during_preparation_cancels_the_game(run: Run, setting: Setting) -> None:
     setting.link.ail("voice", STALE)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
@@ -159,7 +155,7 @@ async def test_a_stop_while_devices_get_ready_calls_the_game_off(
         await until_shown(pilot, lambda: setting.begins == [True])
 
 
-async def test_sound_is_ready_once_it_was_heard(run: Run, setting: Setting) -> None:
+async def test_the_sound_is_ready_after_its_test(run: Run, setting: Setting) -> None:
     setting.setup.world = live_world(setting.workspace, setting.link)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
@@ -171,7 +167,7 @@ async def test_sound_is_ready_once_it_was_heard(run: Run, setting: Setting) -> N
         assert not setting.setup.not_ready
 
 
-async def test_people_are_carried_from_table_to_table_in_a_hall(
+async def test_people_can_be_moved_between_the_tables_of_a_hall(
     run: Run, data_folder: Path
 ) -> None:
     workspace = Workspace(data_folder, users=12)
@@ -189,9 +185,7 @@ async def test_people_are_carried_from_table_to_table_in_a_hall(
     workspace.close()
 
 
-async def test_whether_all_is_ready_is_told_in_view_however_many_people_there_are(
-    run: Run, data_folder: Path
-) -> None:
+async def test_the_readiness_stays_visible_with_many_people(run: Run, data_folder: Path) -> None:
     workspace = Workspace(data_folder, users=24)
     setting = Setting(workspace)
     setting.link.ail("voice", STALE)
@@ -205,7 +199,7 @@ async def test_whether_all_is_ready_is_told_in_view_however_many_people_there_ar
 
 
 @pytest.mark.slow
-async def test_a_guest_and_a_new_name_are_taken_in_on_the_page(run: Run, setting: Setting) -> None:
+async def test_a_guest_can_be_added_on_the_page(run: Run, setting: Setting) -> None:
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         await pilot.press("J", *"Anna", "enter")
@@ -220,7 +214,7 @@ async def test_a_guest_and_a_new_name_are_taken_in_on_the_page(run: Run, setting
 
 
 @pytest.mark.slow
-async def test_a_wide_page_draws_all_at_their_seats(run: Run, setting: Setting) -> None:
+async def test_a_wide_page_draws_everybody_at_their_seats(run: Run, setting: Setting) -> None:
     async with run(app=setting.program(), size=LARGE) as pilot:
         await opened(pilot)
         await pilot.press("J", *"Anna", "enter")
@@ -235,7 +229,7 @@ async def test_a_wide_page_draws_all_at_their_seats(run: Run, setting: Setting) 
         assert "Anna" in drawn and "User 2" in drawn and "User 1" not in drawn
 
 
-async def test_what_is_told_covers_no_line_of_the_page(run: Run, setting: Setting) -> None:
+async def test_messages_cover_no_line_of_the_page(run: Run, setting: Setting) -> None:
     setting.setup.world = live_world(setting.workspace, setting.link)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
@@ -250,7 +244,9 @@ async def test_what_is_told_covers_no_line_of_the_page(run: Run, setting: Settin
 
 
 @pytest.mark.slow
-async def test_who_holds_a_card_before_the_robot_is_here(run: Run, setting: Setting) -> None:
+async def test_showing_a_card_to_the_robot_marks_a_person_as_present(
+    run: Run, setting: Setting
+) -> None:
     setting.setup.world = live_world(setting.workspace, setting.link)
     setting.setup.toggle("user2")
     setting.setup.look_at_card = lambda: "17"  # type: ignore[method-assign]
@@ -267,7 +263,7 @@ async def test_who_holds_a_card_before_the_robot_is_here(run: Run, setting: Sett
         await until_shown(pilot, lambda: not setting.setup.away)
 
 
-async def test_who_is_seen_by_the_robot_is_here(run: Run, setting: Setting) -> None:
+async def test_a_recognised_face_marks_a_person_as_present(run: Run, setting: Setting) -> None:
     world = setting.setup.world = live_world(setting.workspace, setting.link)
     world.knows_faces = True
     setting.setup.toggle("user3")
@@ -279,7 +275,7 @@ async def test_who_is_seen_by_the_robot_is_here(run: Run, setting: Setting) -> N
         assert setting.setup.face == "user3"
 
 
-async def test_a_key_pressed_while_tangy_looks_is_answered(run: Run, setting: Setting) -> None:
+async def test_keys_are_answered_while_tangy_looks(run: Run, setting: Setting) -> None:
     world = setting.setup.world = live_world(setting.workspace, setting.link)
     world.knows_faces = True
     looks = Event()
@@ -299,7 +295,7 @@ async def test_a_key_pressed_while_tangy_looks_is_answered(run: Run, setting: Se
         await until_shown(pilot, lambda: text.NO_FACE in pilot.lines()[1])
 
 
-async def test_nothing_is_asked_about_calls_where_nothing_is_called(
+async def test_an_activity_without_calls_has_no_settings_for_calls(
     run: Run, data_folder: Path
 ) -> None:
     workspace = Workspace(data_folder, activity="trivia")
@@ -322,7 +318,7 @@ class Panel(TangyScreen[None]):
         yield StaffPanel()
 
 
-async def test_a_long_question_is_read_whole_where_nothing_is_called(run: Run) -> None:
+async def test_a_long_question_is_shown_in_full(run: Run) -> None:
     asked = "Reds, question 1: How many minutes has an hour? thirty, sixty or ninety?"
     async with run(Panel()) as pilot:
         panel = pilot.app.screen.query_one(StaffPanel)
@@ -332,7 +328,7 @@ async def test_a_long_question_is_read_whole_where_nothing_is_called(run: Run) -
         assert "sixty or" in read and "ninety?" in read and "1:01 so far" in read
 
 
-def test_an_activity_that_nobody_has_taught_is_not_chosen(
+def test_an_untaught_activity_cannot_be_chosen(
     taught: Path,
 ) -> None:
     workspace = Workspace(taught)
@@ -343,7 +339,7 @@ def test_an_activity_that_nobody_has_taught_is_not_chosen(
     workspace.close()
 
 
-def test_a_code_has_light_all_round_and_is_square() -> None:
+def test_a_qr_code_is_square_with_a_light_margin() -> None:
     lines = qr_lines("http://192.168.1.20:8000/")
     assert len({len(line) for line in lines}) == 1 and lines[0] == "█" * len(lines[0])
     assert abs(len(lines[0]) - 2 * len(lines)) <= 1

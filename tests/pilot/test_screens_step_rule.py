@@ -1,4 +1,4 @@
-"""A key makes the last step a rule; the rule stands with the step, and undo takes it back first."""
+"""A key makes the last step a rule; undo removes the rule before the step."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def rules(workspace: Workspace) -> int:
 
 
 @pytest.mark.slow
-async def test_a_key_makes_the_last_step_a_rule_and_undo_takes_it_back(
+async def test_a_key_makes_the_last_step_a_rule_and_undo_removes_it(
     run: Run, tmp_path: Path
 ) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
@@ -63,7 +63,7 @@ async def test_a_key_makes_the_last_step_a_rule_and_undo_takes_it_back(
 
 
 @pytest.mark.slow
-async def test_esc_makes_no_rule_and_the_word_does_as_the_key(run: Run, tmp_path: Path) -> None:
+async def test_esc_makes_no_rule_and_a_word_makes_one(run: Run, tmp_path: Path) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
     listening(workspace)
     screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
@@ -87,9 +87,7 @@ async def test_a_game_with_cards_offers_no_rule(run: Run, workspace: Workspace) 
         await until_shown(pilot, lambda: "Show a step first" in screen_text(pilot.app))
 
 
-async def test_a_small_screen_names_every_stage_that_is_still_to_show(
-    run: Run, tmp_path: Path
-) -> None:
+async def test_a_small_screen_names_every_missing_stage(run: Run, tmp_path: Path) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
     listening(workspace)
     screen = TeachScreen(workspace, workspace.teaching("Mary", 1))

@@ -1,4 +1,4 @@
-"""While a robot is being switched on a dialog says so, and every way out calls it off."""
+"""The dialog during the opening of a robot; every exit cancels the opening."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.support.waiting import until, until_shown
 
 
 class Robot:
-    """A robot whose devices answer when they are let."""
+    """A robot whose devices answer when the test allows it."""
 
     def __init__(self, workspace: Workspace, wrong: str = "") -> None:
         self.did: list[str] = []
@@ -67,7 +67,7 @@ async def switching(pilot: TangyPilot, robot: Robot) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
-async def test_it_says_what_goes_on_and_how_to_leave_it_off(
+async def test_the_dialog_shows_the_progress_and_how_to_cancel(
     run: Run,
     workspace: Workspace,
     policy: Policy,
@@ -83,7 +83,7 @@ async def test_it_says_what_goes_on_and_how_to_leave_it_off(
 
 
 @pytest.mark.parametrize("key", ["escape", "ctrl+x"])
-async def test_esc_and_stop_leave_it_off(
+async def test_esc_and_stop_cancel_the_opening(
     run: Run, workspace: Workspace, policy: Policy, key: str
 ) -> None:
     robot = Robot(workspace)
@@ -95,7 +95,7 @@ async def test_esc_and_stop_leave_it_off(
 
 
 @pytest.mark.parametrize("leave", [lambda p: p.leave(), lambda p: p.exit()], ids=["left", "ended"])
-async def test_leaving_the_program_leaves_it_off(
+async def test_quitting_the_program_cancels_the_opening(
     run: Run, workspace: Workspace, policy: Policy, leave: Callable[[Program], None]
 ) -> None:
     robot, app = Robot(workspace), None
@@ -106,7 +106,7 @@ async def test_leaving_the_program_leaves_it_off(
         await until(lambda: robot.did[:2] == ["begins", "is off"])  # no screen is left to draw
 
 
-async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
+async def test_esc_typed_ahead_prevents_the_opening(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     """A window that takes its time to come up is left before anything can be read in it."""
@@ -119,7 +119,7 @@ async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
 
 
 @pytest.mark.slow
-async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
+async def test_the_game_begins_when_the_robot_answers_under_another_dialog(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     robot = Robot(workspace)
@@ -133,7 +133,7 @@ async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
         await paused_after(pilot, robot.link, 1)
 
 
-async def test_what_is_wrong_with_the_robot_is_said(
+async def test_an_error_of_the_robot_is_shown(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     robot = Robot(workspace, wrong="The arms have no cable.")

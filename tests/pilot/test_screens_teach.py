@@ -1,4 +1,4 @@
-"""The teaching screen, walked with keys as a teacher would."""
+"""The teaching screen, driven with keys."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def steps(workspace: Workspace) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
-async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
+async def test_a_confirmed_command_becomes_a_step(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
@@ -69,7 +69,7 @@ async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
 
 
 @pytest.mark.slow
-async def test_a_rejected_command_changes_nothing_and_comes_back(
+async def test_a_rejected_command_changes_nothing_and_returns_to_the_line(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -80,7 +80,7 @@ async def test_a_rejected_command_changes_nothing_and_comes_back(
 
 
 @pytest.mark.slow
-async def test_another_behaviour_is_chosen_by_number_and_asked_about_again(
+async def test_an_alternative_is_chosen_by_number_and_verified(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -99,7 +99,7 @@ async def test_another_behaviour_is_chosen_by_number_and_asked_about_again(
         assert not read_demonstrations(workspace.store, workspace.activity.name)
 
 
-async def test_words_that_mean_nothing_are_said_and_stay_to_be_mended(
+async def test_unknown_words_are_reported_and_stay_in_the_line(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -111,7 +111,7 @@ async def test_words_that_mean_nothing_are_said_and_stay_to_be_mended(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("way", [("escape", "escape"), (*"quit", "enter")], ids=["esc", "word"])
-async def test_who_leaves_a_game_is_told_what_was_kept(
+async def test_leaving_a_game_reports_the_kept_steps(
     run: Run, workspace: Workspace, way: tuple[str, ...]
 ) -> None:
     async with run(app=program(workspace), notifications=True) as pilot:
@@ -125,7 +125,7 @@ async def test_who_leaves_a_game_is_told_what_was_kept(
 
 
 @pytest.mark.slow
-async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> None:
+async def test_undo_removes_the_last_step(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
@@ -139,7 +139,7 @@ async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> 
 
 
 @pytest.mark.slow
-async def test_redo_brings_the_steps_back_in_order(run: Run, workspace: Workspace) -> None:
+async def test_redo_restores_the_steps_in_order(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
@@ -197,7 +197,7 @@ async def test_the_game_is_shown_again_from_a_step(
 
 
 @pytest.mark.slow
-async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> None:
+async def test_a_no_leaves_the_game_unchanged(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 4)
         await pilot.press("escape", "up", "ctrl+r")
@@ -209,7 +209,7 @@ async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> 
 
 
 @pytest.mark.slow
-async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace) -> None:
+async def test_the_coverage_panel_lists_missing_situations(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         assert "nobody has had a wrong mark yet" not in screen_text(pilot.app)
         await pilot.press("ctrl+o")
@@ -226,13 +226,15 @@ async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace)
         assert "New to Tangy: helping: wrong marks" in said
 
 
-async def test_on_a_large_screen_it_stands_below_the_steps(run: Run, workspace: Workspace) -> None:
+async def test_a_large_screen_shows_the_coverage_below_the_steps(
+    run: Run, workspace: Workspace
+) -> None:
     async with run(app=program(workspace), size=LARGE) as pilot:
         assert "! nobody has had a wrong mark yet" in screen_text(pilot.app)
 
 
 @pytest.mark.slow
-async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
+async def test_coverage_includes_earlier_demonstrations(run: Run, taught: Path) -> None:
     workspace = Workspace(taught)
     try:
         async with run(app=program(workspace, seed=9)) as pilot:
@@ -251,7 +253,7 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
+async def test_the_status_names_a_guided_session(run: Run, workspace: Workspace) -> None:
     async def start(started: Program) -> None:
         await started.push_screen(
             TeachScreen(workspace, workspace.teaching("ada", 27, guided=True))
@@ -266,7 +268,7 @@ async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
 
 
 @pytest.mark.slow
-async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, workspace: Workspace) -> None:
+async def test_why_shows_the_decision_learnt_so_far(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await pilot.press("f4")  # nothing was shown, so there is nothing to tell
         await ended(pilot, "why")
@@ -295,7 +297,7 @@ async def ended(pilot: Pilot[None], name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("where", ["the line", "nothing", "a chosen step"])
-async def test_letters_go_to_the_line_wherever_the_keys_are(
+async def test_letters_go_to_the_line_from_any_focus(
     run: Run, workspace: Workspace, where: str
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -315,7 +317,7 @@ async def test_letters_go_to_the_line_wherever_the_keys_are(
 
 
 @pytest.mark.slow
-async def test_what_was_not_understood_stays_selected(run: Run, workspace: Workspace) -> None:
+async def test_unknown_words_stay_selected(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         bar = pilot.app.screen.query_one(CommandBar)
         await pilot.press(*"sing us a lullaby", "enter")
@@ -336,7 +338,7 @@ async def test_tab_lists_only_what_can_be_done_now(run: Run, workspace: Workspac
 
 
 @pytest.mark.slow
-async def test_going_where_nobody_asks_is_refused_with_a_way_out(
+async def test_a_visit_without_a_request_is_refused_with_a_suggestion(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -352,7 +354,7 @@ async def test_going_where_nobody_asks_is_refused_with_a_way_out(
 
 
 @pytest.mark.slow
-async def test_leaving_and_coming_back_finds_the_steps(run: Run, workspace: Workspace) -> None:
+async def test_leaving_and_returning_keeps_the_steps(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await pilot.press("escape", "escape")
@@ -364,7 +366,7 @@ async def test_leaving_and_coming_back_finds_the_steps(run: Run, workspace: Work
 
 
 @pytest.mark.slow
-async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
+async def test_a_whole_game_can_be_demonstrated_before_the_next(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -398,7 +400,9 @@ async def test_stop_works_while_a_question_is_open(run: Run, workspace: Workspac
 
 
 @pytest.mark.parametrize("words", ["stop the robot", "emergency stop", "Make it stop!"])
-async def test_a_stop_is_typed_as_it_is_said(run: Run, workspace: Workspace, words: str) -> None:
+async def test_a_typed_stop_works_in_any_spoken_form(
+    run: Run, workspace: Workspace, words: str
+) -> None:
     async with run(app=program(workspace)) as pilot:
         pilot.type(*words, "enter")
         await pilot.pause()
@@ -408,7 +412,7 @@ async def test_a_stop_is_typed_as_it_is_said(run: Run, workspace: Workspace, wor
 
 
 @pytest.mark.slow
-async def test_a_name_with_markup_is_only_a_name(run: Run, tmp_path: Path) -> None:
+async def test_markup_in_a_name_is_shown_as_text(run: Run, tmp_path: Path) -> None:
     with_markup = Workspace(tmp_path / "data")
     with_markup.store.rename("user1", "[/][@click=app.quit]x")
     with_markup.close()
@@ -437,7 +441,7 @@ async def mid_game(pilot: Pilot[None], steps: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_it_looks_in_mid_game(
+async def test_the_screen_during_a_game_matches_its_picture(
     run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace), size=size) as pilot:
@@ -448,7 +452,7 @@ async def test_how_it_looks_in_mid_game(
 
 
 @pytest.mark.slow
-async def test_how_it_looks_to_see_what_is_missing(
+async def test_the_coverage_panel_matches_its_snapshot(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -459,7 +463,7 @@ async def test_how_it_looks_to_see_what_is_missing(
 
 
 @pytest.mark.slow
-async def test_how_a_question_looks(
+async def test_the_question_matches_its_snapshot(
     run: Run, workspace: Workspace, looks: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -470,7 +474,7 @@ async def test_how_a_question_looks(
 
 
 @pytest.mark.slow
-async def test_the_picture_in_the_readme_shows_the_question_as_it_is_asked(
+async def test_the_teaching_picture_in_the_readme_is_current(
     run: Run, workspace: Workspace, draw: Callable[[App[None]], str]
 ) -> None:
     kept = Path(__file__).parent / "pictures" / "teach.svg"

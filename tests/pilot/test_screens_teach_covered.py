@@ -1,4 +1,4 @@
-"""The teaching screen under dialogs: a story waits, the keys stay where they were."""
+"""The teaching screen under dialogs: a scripted game waits, and the focus is kept."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def program(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("covered", ["at the start", "at the end"])
-async def test_a_story_waits_for_the_help_to_be_closed(
+async def test_a_scripted_game_waits_while_the_help_is_open(
     run: Run, workspace: Workspace, covered: str
 ) -> None:
     ended: list[bool | None] = []
@@ -86,9 +86,7 @@ async def test_a_story_waits_for_the_help_to_be_closed(
 
 
 @pytest.mark.slow
-async def test_the_keys_are_where_they_were_when_the_help_is_closed(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_closing_the_help_restores_the_focus(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace, [])) as pilot:
         bar = pilot.app.screen.query_one(CommandBar)
         await pilot.press("escape", "question_mark")
@@ -104,9 +102,7 @@ async def test_the_keys_are_where_they_were_when_the_help_is_closed(
         assert bar.text == "u"
 
 
-async def test_who_watches_a_story_is_told_only_the_keys_that_work(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_a_scripted_game_lists_only_working_keys(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace, [], scripted=1.0)) as pilot:
         watched = screen_text(pilot.app)
         assert "w why" in watched
@@ -115,7 +111,7 @@ async def test_who_watches_a_story_is_told_only_the_keys_that_work(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("typed", [True, False], ids=["typed", "by key"])
-async def test_escape_while_tangy_thinks_stops_that_and_no_more(
+async def test_escape_during_a_computation_cancels_only_that(
     run: Run, workspace: Workspace, typed: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     let_go = Event()

@@ -1,4 +1,4 @@
-"""A game that its teacher ends by words: discarded, finished early, or shown from the start."""
+"""Ending a game by words: discarded, finished early, or started over."""
 
 from __future__ import annotations
 
@@ -36,9 +36,7 @@ def now(pilot: Pilot[None]) -> str:
 
 
 @pytest.mark.slow
-async def test_a_game_that_is_finished_early_says_so_at_once_and_is_over(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_finishing_early_ends_the_game_with_a_message(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await type_words(pilot, "finish the demonstration")
@@ -51,9 +49,7 @@ async def test_a_game_that_is_finished_early_says_so_at_once_and_is_over(
 
 
 @pytest.mark.slow
-async def test_undo_takes_a_finish_back_and_the_game_goes_on(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_undo_reopens_a_finished_game(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
@@ -68,7 +64,7 @@ async def test_undo_takes_a_finish_back_and_the_game_goes_on(
 
 
 @pytest.mark.slow
-async def test_discarding_asks_first_and_a_new_game_begins(run: Run, workspace: Workspace) -> None:
+async def test_discarding_asks_and_begins_a_new_game(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await type_words(pilot, "discard game")

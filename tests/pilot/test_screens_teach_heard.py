@@ -1,4 +1,4 @@
-"""The teaching screen with ears: push-to-talk, three tiers, answers, and what stops the robot."""
+"""The teaching screen with ears: push-to-talk, three tiers, answers, and spoken stops."""
 
 from __future__ import annotations
 
@@ -65,9 +65,7 @@ def steps(workspace: Workspace) -> list[str]:
     return [s.behaviour for s in shown[-1].steps] if shown else []
 
 
-async def test_without_ears_there_is_no_line_and_no_key_to_talk(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_no_microphone_line_and_talk_key_without_ears(run: Run, workspace: Workspace) -> None:
     async def start(started: Program) -> None:
         await started.push_screen(TeachScreen(workspace, workspace.teaching("ann", 1)))
 
@@ -77,7 +75,7 @@ async def test_without_ears_there_is_no_line_and_no_key_to_talk(
         assert "talk" not in screen_text(pilot.app)
 
 
-async def test_t_talks_at_once_and_ends_it(run: Run, workspace: Workspace) -> None:
+async def test_t_starts_and_ends_talking(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         assert "t talk" in line_of(pilot)
@@ -89,7 +87,7 @@ async def test_t_talks_at_once_and_ends_it(run: Run, workspace: Workspace) -> No
         assert "thinking ..." in line_of(pilot)
 
 
-async def test_in_the_bar_t_is_a_letter_and_ctrl_t_talks(run: Run, workspace: Workspace) -> None:
+async def test_ctrl_t_talks_in_the_command_bar(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("colon", "t")
@@ -103,7 +101,7 @@ async def test_in_the_bar_t_is_a_letter_and_ctrl_t_talks(run: Run, workspace: Wo
 
 
 @pytest.mark.parametrize("ears", [FakeEars(hands_free=True), FakeEars(live=False)])
-async def test_where_no_key_is_pushed_the_bar_has_the_keys(
+async def test_the_command_bar_takes_letters_in_hands_free_mode(
     run: Run, workspace: Workspace, ears: FakeEars
 ) -> None:
     async with run(app=teaching(workspace, ears)) as pilot:
@@ -113,7 +111,7 @@ async def test_where_no_key_is_pushed_the_bar_has_the_keys(
         assert "key is needed" in log_of(pilot)
 
 
-async def test_sure_words_are_asked_about_and_become_a_step(run: Run, workspace: Workspace) -> None:
+async def test_certain_words_are_verified_and_become_a_step(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
@@ -127,7 +125,7 @@ async def test_sure_words_are_asked_about_and_become_a_step(run: Run, workspace:
         assert not ears.asks
 
 
-async def test_unsure_words_offer_choices_each_of_which_is_asked_about(
+async def test_uncertain_words_offer_choices_that_are_verified(
     run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars()
@@ -149,9 +147,7 @@ async def test_unsure_words_offer_choices_each_of_which_is_asked_about(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["n", "escape"])
-async def test_none_of_the_choices_does_nothing_and_leaves_the_keys(
-    run: Run, workspace: Workspace, key: str
-) -> None:
+async def test_rejecting_all_choices_does_nothing(run: Run, workspace: Workspace, key: str) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
@@ -164,7 +160,7 @@ async def test_none_of_the_choices_does_nothing_and_leaves_the_keys(
         assert steps(workspace) == []
 
 
-async def test_keys_typed_before_the_choices_were_seen_choose_nothing(
+async def test_keys_typed_before_the_choices_appear_choose_nothing(
     run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars()
@@ -178,7 +174,7 @@ async def test_keys_typed_before_the_choices_were_seen_choose_nothing(
         assert isinstance(pilot.app.screen, ChoicesDialog)
 
 
-async def test_words_that_are_nothing_are_said_and_do_not_stay_in_the_line(
+async def test_unknown_speech_is_reported_and_leaves_the_line_empty(
     run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars()
@@ -189,9 +185,7 @@ async def test_words_that_are_nothing_are_said_and_do_not_stay_in_the_line(
         assert bar_of(pilot).text == ""
 
 
-async def test_what_is_heard_overwrites_nothing_that_is_being_typed(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_speech_does_not_overwrite_typed_text(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press(*"call")
@@ -201,9 +195,7 @@ async def test_what_is_heard_overwrites_nothing_that_is_being_typed(
         assert "'the weather'" in log_of(pilot)
 
 
-async def test_stop_acts_at_once_also_while_a_question_is_open(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_a_spoken_stop_acts_during_a_question(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(StopCommand("stop tangy"))
@@ -220,9 +212,7 @@ async def test_stop_acts_at_once_also_while_a_question_is_open(
 
 
 @pytest.mark.slow
-async def test_yes_and_no_are_heard_when_that_is_switched_on(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_spoken_yes_and_no_work_if_switched_on(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True, answers=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
@@ -241,7 +231,9 @@ async def test_yes_and_no_are_heard_when_that_is_switched_on(
 
 
 @pytest.mark.slow
-async def test_a_yes_does_not_choose_and_a_no_chooses_none(run: Run, workspace: Workspace) -> None:
+async def test_a_yes_chooses_nothing_and_a_no_rejects_all_choices(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True, answers=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
@@ -264,7 +256,7 @@ def dialog_text(pilot: TangyPilot) -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), (80, 24), (120, 40)])
-async def test_what_is_told_while_a_question_is_open_stands_in_it(
+async def test_notes_on_hearing_appear_inside_an_open_question(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     ears = FakeEars(hands_free=True, answers=True)
@@ -291,9 +283,7 @@ async def test_what_is_told_while_a_question_is_open_stands_in_it(
         assert which in log_of(pilot)
 
 
-async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_the_talk_key_clears_the_last_note(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(answers=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
@@ -308,9 +298,7 @@ async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
 
 
 @pytest.mark.slow
-async def test_a_choice_says_which_answers_it_takes_by_voice(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_a_choice_lists_its_spoken_answers(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True, answers=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         several = ears.say(UNSURE, sure=False)
@@ -331,9 +319,7 @@ async def test_a_choice_says_which_answers_it_takes_by_voice(
 
 
 @pytest.mark.slow
-async def test_a_yes_that_no_question_waits_for_does_nothing(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_a_yes_without_a_question_does_nothing(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True, answers=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(Reply(True))
@@ -404,9 +390,7 @@ async def test_a_remark_on_a_spoken_step_is_answered_by_voice(
 
 
 @pytest.mark.slow
-async def test_what_was_said_while_a_question_was_open_comes_next(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_speech_during_a_question_is_handled_next(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"), ears.say("call number"))
@@ -421,7 +405,7 @@ async def test_what_was_said_while_a_question_was_open_comes_next(
 
 
 @pytest.mark.slow
-async def test_a_recording_is_listened_to_only_when_a_command_is_due(
+async def test_a_recording_is_read_only_when_a_command_is_due(
     run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars(live=False)
@@ -444,7 +428,7 @@ async def test_a_recording_is_listened_to_only_when_a_command_is_due(
         assert "the recording is over" in line_of(pilot)
 
 
-async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, workspace: Workspace) -> None:
+async def test_the_line_shows_level_words_and_problems(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         line = pilot.app.screen.query_one(MicrophoneLine)
@@ -460,7 +444,7 @@ async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, workspace:
         assert line.text.strip("○ ") == "shut while Tangy speaks"
 
 
-async def test_the_line_is_drawn_only_when_it_shows_something_else(
+async def test_the_line_is_drawn_only_on_changes(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ears = FakeEars()
@@ -482,7 +466,7 @@ async def test_the_line_is_drawn_only_when_it_shows_something_else(
 
 
 @pytest.mark.slow
-async def test_names_are_listened_for_as_they_are_said_now(run: Run, workspace: Workspace) -> None:
+async def test_changed_names_are_recognised_at_once(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("colon", *"phrases", "enter")
@@ -500,7 +484,7 @@ async def test_names_are_listened_for_as_they_are_said_now(run: Run, workspace: 
 
 
 @pytest.mark.slow
-async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(
+async def test_the_help_explains_talking_and_opens_the_phrases(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=teaching(workspace, FakeEars())) as pilot:
@@ -513,9 +497,7 @@ async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(
 
 
 @pytest.mark.slow
-async def test_the_ears_stay_with_the_program_and_end_with_it(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_the_ears_live_as_long_as_the_program(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True)
     async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("escape", "escape")
@@ -535,7 +517,7 @@ async def test_the_ears_stay_with_the_program_and_end_with_it(
 
 
 @pytest.mark.slow
-async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
+async def test_a_failing_microphone_is_reported_and_typing_still_works(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tangy_profiles.errors import TangyError
@@ -568,7 +550,7 @@ async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
     ],
     ids=["words", "words-large", "trouble", "choices", "others", "no-answer"],
 )
-async def test_how_hearing_looks(
+async def test_the_microphone_line_matches_its_snapshot(
     run: Run,
     workspace: Workspace,
     size: tuple[int, int],

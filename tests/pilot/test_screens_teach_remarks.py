@@ -1,4 +1,4 @@
-"""A remark on a step stands in the place of the command line, and is answered by its number."""
+"""A remark on a step replaces the command line, and takes a number as its answer."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ async def contradict(pilot: Pilot[None]) -> RemarkDialog:
 
 
 @pytest.mark.parametrize("width", [50, 80])
-async def test_a_number_stands_in_one_line_with_its_answer(
+async def test_each_number_is_in_one_line_with_its_answer(
     run: Run, workspace: Workspace, width: int
 ) -> None:
     async with run((width, 24), app=Program(workspace, show_remark, clock=StillClock())) as pilot:
@@ -87,9 +87,7 @@ async def test_a_contradiction_is_answered_in_place(
 
 
 @pytest.mark.slow
-async def test_escape_puts_it_off_and_letters_type_the_next_command(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_escape_defers_the_remark(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await contradict(pilot)
         await pilot.press("x", "y", "enter")  # none of these answers
@@ -102,7 +100,7 @@ async def test_escape_puts_it_off_and_letters_type_the_next_command(
 
 
 @pytest.mark.slow
-async def test_a_slip_is_taken_back_from_there(run: Run, workspace: Workspace) -> None:
+async def test_a_slip_is_undone_from_the_remark(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await contradict(pilot)
         await pilot.press("4")
@@ -111,7 +109,7 @@ async def test_a_slip_is_taken_back_from_there(run: Run, workspace: Workspace) -
 
 
 @pytest.mark.slow
-async def test_a_remark_that_was_put_off_is_answered_by_no_later_number(
+async def test_a_later_number_does_not_answer_a_deferred_remark(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:

@@ -1,4 +1,4 @@
-"""A new teacher is shown around once, in a game of their own, and can leave that at any time."""
+"""The tour for a new teacher: shown once, in a game of its own, and skippable at any time."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ async def test_a_new_teacher_gives_one_real_command_and_answers_its_question(
 
 
 @pytest.mark.slow
-async def test_escape_skips_the_tour_and_stays_where_one_teaches(
+async def test_escape_skips_the_tour_and_stays_on_the_teaching_screen(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace)) as pilot:
@@ -68,7 +68,7 @@ async def test_escape_skips_the_tour_and_stays_where_one_teaches(
         assert "Welcome" not in screen_text(pilot.app)
 
 
-async def test_the_tour_does_not_come_again(run: Run, workspace: Workspace) -> None:
+async def test_the_tour_is_shown_once(run: Run, workspace: Workspace) -> None:
     save_profile(workspace.store.folder, TeacherProfile("Ada"))
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
@@ -98,7 +98,7 @@ async def teach_one_step(workspace: Workspace, run: Run, *renames: str) -> list[
 @pytest.mark.parametrize(
     "renames", [("ctrl+n", *"Bea", "enter"), (*"my name is Bea", "enter")], ids=["key", "words"]
 )
-async def test_the_name_is_changed_while_one_teaches(
+async def test_the_name_can_be_changed_while_teaching(
     run: Run, workspace: Workspace, renames: tuple[str, ...]
 ) -> None:
     assert await teach_one_step(workspace, run, *renames) == ["Bea"]
@@ -106,7 +106,7 @@ async def test_the_name_is_changed_while_one_teaches(
 
 
 @pytest.mark.slow
-async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Workspace) -> None:
+async def test_a_game_keeps_the_teacher_who_began_it(run: Run, workspace: Workspace) -> None:
     assert await teach_one_step(workspace, run) == ["Ada"]
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
@@ -119,7 +119,7 @@ async def test_a_game_that_was_begun_stays_its_teachers(run: Run, workspace: Wor
 
 
 @pytest.mark.slow
-async def test_escape_takes_back_what_was_begun_before_it_skips_the_tour(
+async def test_escape_cancels_a_command_before_it_skips_the_tour(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(app=program(workspace), size=SMALL) as pilot:

@@ -1,4 +1,4 @@
-"""Tangy's voice on the screens: on and off, shut ears, life's pace, and silence after STOP."""
+"""Tangy's voice on the screens: on and off, muted ears, real time, and silence after STOP."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ async def do(pilot: TangyPilot, words: str) -> None:
 
 
 @pytest.mark.slow
-async def test_what_tangy_says_while_teaching_is_spoken(
+async def test_speech_of_behaviours_is_spoken_while_teaching(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     workspace.prefer_voice(workspace.people[2], VoicePreference(100, "en-gb"))
@@ -93,7 +93,7 @@ async def test_what_tangy_says_while_teaching_is_spoken(
 
 
 @pytest.mark.slow
-async def test_a_new_step_cuts_what_was_said_for_the_last(
+async def test_a_new_step_cuts_the_speech_of_the_last(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     async with run(app=teaching(workspace)) as pilot:
@@ -103,7 +103,7 @@ async def test_a_new_step_cuts_what_was_said_for_the_last(
         assert "number is" in voices[0].lines[-1]
 
 
-async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
+async def test_only_the_last_of_several_quick_lines_is_spoken(
     run: Run, workspace: Workspace, voices: list[FakeVoice], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(speaking, "GAP", 0.05)
@@ -116,7 +116,7 @@ async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
 
 
 @pytest.mark.slow
-async def test_nothing_is_made_before_it_is_switched_on(
+async def test_no_voice_is_created_before_it_is_switched_on(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     async with run(app=teaching(workspace, voice=False), notifications=True) as pilot:
@@ -134,7 +134,7 @@ async def test_nothing_is_made_before_it_is_switched_on(
         assert len(voices[0].lines) == 1
 
 
-async def test_the_palette_switches_it_on_too(
+async def test_the_palette_switches_the_voice(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     async with run(app=teaching(workspace, voice=False)) as pilot:
@@ -143,7 +143,7 @@ async def test_the_palette_switches_it_on_too(
 
 
 @pytest.mark.slow
-async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
+async def test_a_missing_voice_is_reported_once(
     run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def silent(
@@ -164,7 +164,7 @@ async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
 
 
 @pytest.mark.slow
-async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_silent(
+async def test_the_microphone_is_muted_during_speech_and_t_ends_the_speech(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     ears = FakeEars()
@@ -184,7 +184,7 @@ async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_sile
 
 
 @pytest.mark.slow
-async def test_nobody_is_interrupted_who_is_talking_to_tangy(
+async def test_tangy_does_not_speak_while_a_person_talks_to_it(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     ears = FakeEars()
@@ -196,7 +196,7 @@ async def test_nobody_is_interrupted_who_is_talking_to_tangy(
 
 
 @pytest.mark.slow
-async def test_stop_and_leaving_let_it_fall_silent(
+async def test_stop_and_leaving_end_the_speech(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     async with run(app=teaching(workspace)) as pilot:
@@ -212,7 +212,7 @@ async def test_stop_and_leaving_let_it_fall_silent(
         assert not voices[0].speaking
 
 
-async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
+async def test_a_step_in_real_time_waits_for_the_speech(
     run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:
     async with run(app=playing(workspace, policy, 1)) as pilot:
@@ -237,7 +237,7 @@ async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
 
 
 @pytest.mark.slow
-async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
+async def test_manual_steps_and_faster_games_do_not_wait_for_speech(
     run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:
     async with run(app=playing(workspace, policy, 1)) as pilot:
@@ -255,7 +255,7 @@ async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
 
 
 @pytest.mark.slow
-async def test_a_game_that_is_skipped_to_its_end_is_silent(
+async def test_skipping_to_the_end_is_silent(
     run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:
     async with run(app=playing(workspace, policy, 1)) as pilot:
@@ -268,16 +268,14 @@ async def test_a_game_that_is_skipped_to_its_end_is_silent(
         assert not voices[0].speaking
 
 
-def test_what_is_made_ready_names_nobody(workspace: Workspace) -> None:
+def test_prerendered_lines_name_nobody(workspace: Workspace) -> None:
     lines = opening_lines(workspace.activity)
     assert all("{" not in line and line for line in lines)
     label = workspace.activity.deck.label
     assert all(any(label(n) in line for line in lines) for n in workspace.activity.deck.numbers)
 
 
-async def test_the_program_does_not_wait_for_a_voice_to_be_made_ready(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_the_program_does_not_wait_for_prerendering(run: Run, workspace: Workspace) -> None:
     async with run(app=teaching(workspace, voice=False)) as pilot:
         assert isinstance(pilot.app, Program)
         pilot.app.speaker.prepare(("a", "b"))

@@ -49,7 +49,7 @@ def screen(control: GameController, data_folder: Path) -> Iterator[WatchScreen]:
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE])
-async def test_it_shows_the_room_the_calls_and_who_drives(
+async def test_the_screen_shows_the_room_the_calls_and_the_operator(
     control: GameController, screen: WatchScreen, run: Run, size: tuple[int, int]
 ) -> None:
     async with run(screen, size=size) as pilot:
@@ -63,7 +63,7 @@ async def test_it_shows_the_room_the_calls_and_who_drives(
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE])
-async def test_it_shows_the_time_and_who_waits_how_long_as_staff_see_it(
+async def test_the_screen_shows_the_times_and_waits_of_the_staff_panel(
     control: GameController, screen: WatchScreen, run: Run, size: tuple[int, int]
 ) -> None:
     world = control.supervision.world
@@ -81,7 +81,9 @@ async def test_it_shows_the_time_and_who_waits_how_long_as_staff_see_it(
         assert told in pilot.text()
 
 
-async def test_it_follows_the_game(control: GameController, screen: WatchScreen, run: Run) -> None:
+async def test_the_screen_follows_the_game(
+    control: GameController, screen: WatchScreen, run: Run
+) -> None:
     async with run(screen):
         await until(lambda: screen.query_one(StatusLine).status.step == 5)
         told = len(screen.query_one(LogView).sentences)
@@ -90,7 +92,7 @@ async def test_it_follows_the_game(control: GameController, screen: WatchScreen,
         await until(lambda: len(screen.query_one(LogView).sentences) > told)
 
 
-async def test_stop_stops_the_robot_and_says_who_did(
+async def test_stop_stops_the_robot_and_names_who_did_it(
     control: GameController, screen: WatchScreen, run: Run, workspace: Workspace
 ) -> None:
     async with run(screen) as pilot:
@@ -101,7 +103,7 @@ async def test_stop_stops_the_robot_and_says_who_did(
     assert [event.record.by for event in workspace.store.events(StaffAction)] == ["Bea"]
 
 
-async def test_who_leaves_stops_nothing(
+async def test_leaving_stops_nothing(
     control: GameController, screen: WatchScreen, run: Run
 ) -> None:
     async with run(screen) as pilot:

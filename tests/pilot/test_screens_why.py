@@ -1,4 +1,4 @@
-"""Why this?: the grounds of a decision, read and opened with keys, at both sizes."""
+"""Why this?: the explanation of a decision, read and opened with keys, at both sizes."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def persuading(workspace: Workspace) -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
-async def test_votes_come_first_and_then_the_draws(
+async def test_the_dialog_shows_votes_before_draws(
     run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     why, choice = why_of(workspace, persuading(workspace)), a_choice(workspace)
@@ -96,9 +96,7 @@ async def test_votes_come_first_and_then_the_draws(
 
 
 @pytest.mark.slow
-async def test_enter_opens_the_step_where_it_was_demonstrated(
-    run: Run, workspace: Workspace
-) -> None:
+async def test_enter_opens_the_demonstrated_step(run: Run, workspace: Workspace) -> None:
     why = why_of(workspace, persuading(workspace))
     async with run(app=showing(workspace, why)) as pilot:
         await pilot.press("down", "enter")
@@ -120,7 +118,7 @@ async def test_enter_opens_the_step_where_it_was_demonstrated(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
-async def test_what_was_never_shown_says_so_and_where_the_trees_guess_from(
+async def test_an_undemonstrated_situation_shows_the_nearest_steps(
     run: Run, workspace: Workspace
 ) -> None:
     policy, _ = load_policy(workspace.store, workspace.activity)
@@ -134,7 +132,7 @@ async def test_what_was_never_shown_says_so_and_where_the_trees_guess_from(
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
-async def test_how_it_looks(
+async def test_the_explanation_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     why = why_of(workspace, persuading(workspace))
@@ -144,7 +142,7 @@ async def test_how_it_looks(
         looks(pilot.app)
 
 
-async def test_it_can_be_read_in_plain_letters(run: Run, workspace: Workspace) -> None:
+async def test_the_explanation_is_readable_in_ascii(run: Run, workspace: Workspace) -> None:
     why = why_of(workspace, persuading(workspace))
     ascii_app = showing(workspace, why, a_choice(workspace), ascii=True)
     async with run(app=ascii_app) as pilot:

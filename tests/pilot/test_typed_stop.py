@@ -13,11 +13,11 @@ def taken(text: str, apart: float = 0.1) -> list[str]:
 
 
 @pytest.mark.parametrize("text", ["stop", "STOP", "sstop", "please stop"])
-def test_the_word_stops_whatever_was_typed_before(text: str) -> None:
+def test_the_word_stop_stops_after_any_other_keys(text: str) -> None:
     assert taken(text)[-1] == "stop" and taken(text)[:-1] == ["key"] * (len(text) - 1)
 
 
-def test_the_rest_of_the_sentence_is_no_keys_until_there_is_a_pause() -> None:
+def test_the_rest_of_the_sentence_is_swallowed_until_a_pause() -> None:
     typed = TypedStop()
     for number, letter in enumerate("stop"):
         typed.take(letter, number / 10)
@@ -25,7 +25,7 @@ def test_the_rest_of_the_sentence_is_no_keys_until_there_is_a_pause() -> None:
     assert typed.take("p", 0.5 + REST_SECONDS + 0.1) == "key"
 
 
-def test_letters_that_are_far_apart_are_keys_and_so_is_what_comes_after_another_key() -> None:
+def test_slow_or_interrupted_letters_are_keys() -> None:
     assert "stop" not in taken("stop", apart=TOGETHER_SECONDS + 0.1)
     typed = TypedStop()
     for letter in ("s", "t", None, "o", "p"):

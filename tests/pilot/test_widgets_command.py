@@ -1,4 +1,4 @@
-"""The command bar: completion, history, and that nothing typed lands where it should not."""
+"""The command bar: completion, history, and keys typed ahead."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def begins(typed: str) -> tuple[str, ...]:
 
 
 class Bar(TangyScreen[None]):
-    """A command bar and what it was given."""
+    """A command bar, and the commands that it gave."""
 
     AUTO_FOCUS = "#command-input"
     BINDINGS = [("u", "undo", "Undo"), ("escape", "back", "Back")]  # noqa: RUF012 - as Textual has it
@@ -55,7 +55,7 @@ def bar_of(pilot: TangyPilot) -> CommandBar:
     return pilot.app.screen.query_one(CommandBar)
 
 
-async def test_a_command_is_given_without_spaces_around_it(run: Run) -> None:
+async def test_a_command_is_stripped_of_spaces(run: Run) -> None:
     screen = Bar()
     async with run(screen) as pilot:
         pilot.type(*"  call number ", "enter")
@@ -68,7 +68,7 @@ async def test_a_command_is_given_without_spaces_around_it(run: Run) -> None:
         assert screen.given == ["call number"]
 
 
-async def test_it_is_closed_until_it_is_said_what_became_of_the_command(run: Run) -> None:
+async def test_the_bar_is_closed_until_the_command_is_handled(run: Run) -> None:
     screen = Bar()
     async with run(screen) as pilot:
         pilot.type(*"call number", "enter", *"yu", "enter", "escape")
@@ -81,7 +81,7 @@ async def test_it_is_closed_until_it_is_said_what_became_of_the_command(run: Run
         assert bar_of(pilot).text == "s"
 
 
-async def test_it_opens_by_itself_when_nobody_says_anything(run: Run) -> None:
+async def test_the_bar_reopens_after_a_timeout(run: Run) -> None:
     async with run(Bar()) as pilot:
         pilot.type(*"call number", "enter")
         await pilot.pause()
@@ -92,7 +92,7 @@ async def test_it_opens_by_itself_when_nobody_says_anything(run: Run) -> None:
         assert bar_of(pilot).text == "g"
 
 
-async def test_keys_that_come_in_one_piece_keep_their_order(run: Run) -> None:
+async def test_simultaneous_keys_keep_their_order(run: Run) -> None:
     async with run(Bar()) as pilot:
         pilot.type(*"ab", "backspace", *"cd", "left", "x", "home", "y", "end", "z")
         await pilot.pause()
@@ -114,7 +114,7 @@ async def test_matches_are_listed_and_the_first_is_completed(run: Run) -> None:
         assert bar_of(pilot).text == "greet everyone"
 
 
-async def test_tab_says_so_when_nothing_fits(run: Run) -> None:
+async def test_tab_reports_that_nothing_fits(run: Run) -> None:
     async with run(Bar()) as pilot:
         await pilot.press("x", "tab")
         await pilot.pause()
@@ -124,14 +124,14 @@ async def test_tab_says_so_when_nothing_fits(run: Run) -> None:
         assert bar_of(pilot).text == "c" and NOTHING_FITS not in pilot.text()
 
 
-async def test_blanks_alone_are_an_empty_line_to_tab(run: Run) -> None:
+async def test_tab_treats_blanks_as_an_empty_line(run: Run) -> None:
     async with run(Bar()) as pilot:
         pilot.type("space", "tab", "tab")
         await pilot.pause()
         assert bar_of(pilot).text == NOW[0]
 
 
-async def test_tab_takes_what_is_meant_by_other_words(run: Run) -> None:
+async def test_tab_completes_paraphrases(run: Run) -> None:
     meant = ("call number", "tell a joke")
     async with run(Bar(lambda typed: meant if typed == "numbers" else ())) as pilot:
         pilot.type(*"numbers", "tab")
@@ -141,7 +141,7 @@ async def test_tab_takes_what_is_meant_by_other_words(run: Run) -> None:
             await pilot.press("tab")
 
 
-async def test_tab_lists_what_can_be_said_now_and_takes_one_after_the_other(run: Run) -> None:
+async def test_tab_cycles_through_the_possible_commands(run: Run) -> None:
     async with run(Bar()) as pilot:
         for taken in ("", *NOW, *NOW):
             await pilot.press("tab")
@@ -153,7 +153,7 @@ async def test_tab_lists_what_can_be_said_now_and_takes_one_after_the_other(run:
         assert bar_of(pilot).text == "call numbers" and "celebrate" not in pilot.text()
 
 
-async def test_a_list_is_made_anew_once_something_was_done(run: Run) -> None:
+async def test_the_list_is_rebuilt_after_a_command(run: Run) -> None:
     async with run(Bar()) as pilot:
         await pilot.press("tab")
         await pilot.pause()
@@ -163,7 +163,7 @@ async def test_a_list_is_made_anew_once_something_was_done(run: Run) -> None:
         assert bar_of(pilot).text == ""
 
 
-async def test_history_by_up_and_down_keeps_what_was_being_typed(run: Run) -> None:
+async def test_the_history_keeps_the_typed_text(run: Run) -> None:
     async with run(Bar()) as pilot:
         for text in ("one", "two", "two"):
             pilot.type(*text, "enter")
@@ -178,7 +178,7 @@ async def test_history_by_up_and_down_keeps_what_was_being_typed(run: Run) -> No
         assert bar_of(pilot).text == "thr"
 
 
-async def test_escape_makes_single_letters_keys_again_and_colon_returns(run: Run) -> None:
+async def test_escape_makes_letters_keys_and_colon_returns(run: Run) -> None:
     screen = Bar()
     async with run(screen) as pilot:
         await pilot.press("a", "escape", "u")
@@ -207,18 +207,18 @@ async def test_question_mark_is_help_in_an_empty_bar_only(run: Run) -> None:
         assert bar_of(pilot).text == "a?"
 
 
-async def test_a_command_has_a_greatest_length(run: Run) -> None:
+async def test_a_command_has_a_maximum_length(run: Run) -> None:
     async with run(Bar()) as pilot:
         bar_of(pilot).restore("x" * 500)
         assert len(bar_of(pilot).text) == LONGEST
 
 
-async def test_its_cursor_does_not_blink(run: Run) -> None:
+async def test_the_cursor_does_not_blink(run: Run) -> None:
     async with run(Bar()) as pilot:
         assert not pilot.app.screen.query_one(CommandInput).cursor_blink
 
 
-async def test_over_a_text_that_was_left_it_says_which_keys_there_are(run: Run) -> None:
+async def test_leaving_the_bar_with_text_shows_the_keys(run: Run) -> None:
     async with run(Bar()) as pilot:
         await pilot.press("c", "escape")
         await pilot.pause()

@@ -1,4 +1,4 @@
-"""The frame: keys that work everywhere, help, home, pictures, small windows, ways out."""
+"""The frame: global keys, help, home, pictures, small windows, and exits."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ async def test_stop_works_while_a_command_is_typed(run: Run) -> None:
 # --------------------------------------------------------------------------------- leaving
 
 
-async def test_ctrl_c_says_stop_and_leaves(run: Run) -> None:
+async def test_ctrl_c_stops_and_quits(run: Run) -> None:
     screen = Plain()
     async with run(screen) as pilot:
         await pilot.press("ctrl+c")
@@ -124,7 +124,7 @@ async def test_ctrl_c_says_stop_and_leaves(run: Run) -> None:
         assert not pilot.app.is_running
 
 
-async def test_leaving_waits_until_every_screen_has_heard_of_it(run: Run) -> None:
+async def test_quitting_waits_until_every_screen_has_handled_the_stop(run: Run) -> None:
     order: list[str] = []
 
     class Slow(Plain):
@@ -148,7 +148,7 @@ async def test_leaving_waits_until_every_screen_has_heard_of_it(run: Run) -> Non
 @pytest.mark.parametrize(
     ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["TERM", "HUP"]
 )
-async def test_signals_end_it_in_good_order(run: Run, number: int, code: int) -> None:
+async def test_signals_end_the_program_cleanly(run: Run, number: int, code: int) -> None:
     screen = Plain()
     async with run(screen) as pilot:
         os.kill(os.getpid(), number)
@@ -161,7 +161,7 @@ async def test_signals_end_it_in_good_order(run: Run, number: int, code: int) ->
 # --------------------------------------------------------------------------- small windows
 
 
-async def test_a_small_window_is_covered_and_comes_back(run: Run) -> None:
+async def test_a_small_window_is_covered_until_it_grows(run: Run) -> None:
     screen = Plain()
     async with run(screen) as pilot:
         screen.query_one(Transcript).focus()
@@ -189,7 +189,7 @@ async def test_a_small_window_is_covered_and_comes_back(run: Run) -> None:
         assert screen.marks == 1
 
 
-async def test_a_question_cannot_be_answered_blindly(run: Run) -> None:
+async def test_a_covered_question_cannot_be_answered(run: Run) -> None:
     async with run(Plain(), (40, 10)) as pilot:
         answers: list[bool | None] = []
         await pilot.app.push_screen(ConfirmDialog("Sure?"), answers.append)
@@ -225,7 +225,7 @@ async def test_help_knows_screen_widget_and_keys(run: Run) -> None:
         assert pilot.app.screen is screen
 
 
-async def test_help_over_a_question_tells_of_the_question(run: Run) -> None:
+async def test_help_over_a_question_explains_the_question(run: Run) -> None:
     async with run(Plain()) as pilot:
         dialog = ConfirmDialog("Sure?")
         await pilot.app.push_screen(dialog)
@@ -248,7 +248,7 @@ class Homely(TangyApp):
         self.chosen.append(event.id)
 
 
-async def test_home_chooses_by_letter_arrows_and_mouse(run: Run) -> None:
+async def test_home_items_are_chosen_by_letter_arrows_and_mouse(run: Run) -> None:
     app = Homely()
     async with run(app=app) as pilot:
         for letter in "tilpoed":
@@ -271,7 +271,7 @@ async def test_home_chooses_by_letter_arrows_and_mouse(run: Run) -> None:
         assert not app.is_running
 
 
-async def test_home_asks_how_far_things_are_each_time_it_is_shown(run: Run) -> None:
+async def test_home_refreshes_its_states_each_time_it_is_shown(run: Run) -> None:
     count = 0
 
     def states() -> dict[str, str]:
@@ -290,7 +290,7 @@ async def test_home_asks_how_far_things_are_each_time_it_is_shown(run: Run) -> N
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
-async def test_home_as_it_looks(
+async def test_home_matches_its_snapshot(
     run: Run, snapshot: SnapshotAssertion, size: tuple[int, int]
 ) -> None:
     async with run(HomeScreen(lambda: STATES, note="Bingo"), size) as pilot:
@@ -300,7 +300,7 @@ async def test_home_as_it_looks(
 # -------------------------------------------------------------------- pictures and the rest
 
 
-async def test_s_saves_a_picture_and_says_where(run: Run, tmp_path: Path) -> None:
+async def test_s_saves_a_picture_and_shows_its_path(run: Run, tmp_path: Path) -> None:
     app = TangyApp(Plain, pictures=tmp_path / "new", clock=lambda: 0.0)
     async with run(app=app, notifications=True) as pilot:
         await pilot.press("s")
@@ -310,7 +310,7 @@ async def test_s_saves_a_picture_and_says_where(run: Run, tmp_path: Path) -> Non
         assert "Saved" in pilot.text()
 
 
-async def test_a_picture_that_cannot_be_saved_is_said_so(run: Run, tmp_path: Path) -> None:
+async def test_a_failed_picture_is_reported(run: Run, tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     app = TangyApp(Plain, pictures=blocked, clock=lambda: 0.0)
@@ -320,7 +320,7 @@ async def test_a_picture_that_cannot_be_saved_is_said_so(run: Run, tmp_path: Pat
         assert "could not be saved" in " ".join(pilot.text().split())
 
 
-async def test_the_mouse_can_be_given_back_to_the_terminal(run: Run) -> None:
+async def test_m_switches_the_mouse_off_and_on(run: Run) -> None:
     async with run(Plain()) as pilot:
         assert app_of(pilot).mouse
         await pilot.press("m")
@@ -329,7 +329,7 @@ async def test_the_mouse_can_be_given_back_to_the_terminal(run: Run) -> None:
         assert app_of(pilot).mouse
 
 
-def test_the_driver_still_has_what_switches_the_mouse() -> None:
+def test_the_driver_still_has_the_methods_for_the_mouse() -> None:
     """Textual keeps this private: it tells us when a release changes it."""
     from textual.drivers.linux_driver import LinuxDriver
 
@@ -338,7 +338,7 @@ def test_the_driver_still_has_what_switches_the_mouse() -> None:
 
 
 @pytest.mark.slow
-async def test_plus_enlarges_the_panel_that_has_the_keys(run: Run) -> None:
+async def test_plus_enlarges_the_focused_panel(run: Run) -> None:
     screen = GalleryScreen()
     async with run(screen, LARGE) as pilot:
         screen.transcript.focus()
@@ -392,7 +392,7 @@ def contrast(one: str, other: str) -> float:
 
 
 @pytest.mark.parametrize("theme", [DARK, LIGHT], ids=lambda t: t.name)
-def test_text_has_contrast(theme: Any) -> None:
+def test_text_has_enough_contrast(theme: Any) -> None:
     inks = theme.variables
     written = [theme.foreground, theme.accent, theme.success, theme.warning, theme.error]
     written += [theme.primary, inks["ink-dim"], inks["ink-person"], inks["ink-table"]]
@@ -405,7 +405,7 @@ def test_text_has_contrast(theme: Any) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("theme", [t.name for t in THEMES] + ["textual-dark", "nord", "ansi-dark"])
-async def test_every_theme_draws_everything(run: Run, theme: str) -> None:
+async def test_every_theme_draws_the_gallery(run: Run, theme: str) -> None:
     async with run(GalleryScreen(), LARGE) as pilot:
         app_of(pilot).ansi_color = None
         pilot.app.theme = theme
@@ -422,13 +422,13 @@ async def test_every_theme_draws_everything(run: Run, theme: str) -> None:
         (LIGHT.name, True, ANSI),
     ],
 )
-def test_the_chosen_theme_is_used_again_if_the_terminal_can_show_it(
+def test_the_chosen_theme_is_restored_if_the_terminal_supports_it(
     chosen: str, ansi: bool, begins: Theme
 ) -> None:
     assert first_theme(chosen, ansi=ansi) == begins.name
 
 
-async def test_a_theme_of_the_palette_is_kept(run: Run, tmp_path: Path) -> None:
+async def test_a_theme_chosen_in_the_palette_is_stored(run: Run, tmp_path: Path) -> None:
     keep = partial(change_theme, tmp_path)
     async with run(app=TangyApp(theme=DARK.name, keep_theme=keep)) as pilot:
         (light,) = (
@@ -441,7 +441,7 @@ async def test_a_theme_of_the_palette_is_kept(run: Run, tmp_path: Path) -> None:
     assert TangyApp(theme=read_profile(tmp_path).theme).theme == LIGHT.name
 
 
-async def test_ansi_writes_the_terminals_own_colours_only(run: Run) -> None:
+async def test_ansi_mode_uses_only_the_colours_of_the_terminal(run: Run) -> None:
     async with run(GalleryScreen(), LARGE, kind=TerminalKind(ansi=True)) as pilot:
         assert pilot.app.theme == ANSI.name
         for strip in pilot.app.screen._compositor.render_strips():
@@ -451,7 +451,7 @@ async def test_ansi_writes_the_terminals_own_colours_only(run: Run) -> None:
                     assert colour is None or colour.triplet is None
 
 
-async def test_no_color_leaves_no_colour_and_every_mark(
+async def test_no_color_removes_colours_and_keeps_marks(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
@@ -468,13 +468,15 @@ async def test_no_color_leaves_no_colour_and_every_mark(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [SMALL, LARGE])
-async def test_pictures_to_look_at(run: Run, picture: Any, size: tuple[int, int]) -> None:
+async def test_the_gallery_matches_its_pictures(
+    run: Run, picture: Any, size: tuple[int, int]
+) -> None:
     async with run(GalleryScreen(), size) as pilot:
         picture(pilot.app)
 
 
 @pytest.mark.slow
-async def test_everything_survives_any_size(run: Run) -> None:
+async def test_the_gallery_survives_any_size(run: Run) -> None:
     async with run(GalleryScreen(8), LARGE) as pilot:
         await pilot.press("escape", "d")
         for size in ((1, 1), (5, 60), (300, 3), (60, 18), (59, 18), (237, 71), SMALL):
@@ -485,7 +487,7 @@ async def test_everything_survives_any_size(run: Run) -> None:
         assert "Steps" in pilot.text()
 
 
-async def test_a_screen_that_is_laid_out_as_the_program_ends_leaves_no_error(run: Run) -> None:
+async def test_a_screen_mounted_during_the_exit_raises_no_error(run: Run) -> None:
     async with run(Plain()) as pilot:
         await pilot.app.push_screen(Late())
     assert pilot.app.return_code == 0

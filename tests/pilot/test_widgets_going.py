@@ -1,4 +1,4 @@
-"""What goes on beside a screen ends before the screen's panels go."""
+"""Background tasks of a screen end before its panels are removed."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Busy(TangyScreen[None]):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("leaves", [False, True], ids=["it is closed", "the program is left"])
-async def test_nothing_is_written_on_panels_that_have_gone(run: Run, leaves: bool) -> None:
+async def test_no_task_writes_to_removed_panels(run: Run, leaves: bool) -> None:
     for _ in range(5):
         async with run(app=TangyApp()) as pilot:
             busy = Busy()

@@ -38,7 +38,7 @@ SAID = {
 }
 
 
-async def test_every_state_is_said_in_words_and_fits(run: Run) -> None:
+async def test_every_state_has_words_that_fit(run: Run) -> None:
     screen = Line(SampleEars("off"))
     async with run(screen) as pilot:
         for width in (60, 80, 120):
@@ -62,7 +62,7 @@ async def test_every_state_is_said_in_words_and_fits(run: Run) -> None:
                 assert plain.count("?") == text.count("?")
 
 
-async def test_the_bar_is_as_long_as_it_is_loud(run: Run) -> None:
+async def test_the_bar_length_follows_the_level(run: Run) -> None:
     ears = SampleEars("listening")
     screen = Line(ears)
     async with run(screen):
@@ -73,7 +73,7 @@ async def test_the_bar_is_as_long_as_it_is_loud(run: Run) -> None:
             assert screen.line.text.count("·") == BAR - full
 
 
-async def test_of_many_words_the_last_are_shown(run: Run) -> None:
+async def test_the_line_shows_the_last_of_many_words(run: Run) -> None:
     screen = Line(SampleEars("speaking", " ".join(f"word{n}" for n in range(40))))
     async with run(screen) as pilot:
         assert screen.line.text.endswith("word39")
@@ -83,14 +83,14 @@ async def test_of_many_words_the_last_are_shown(run: Run) -> None:
         assert screen.line.text.endswith("word39")
 
 
-async def test_it_says_what_alone_is_listened_for(run: Run) -> None:
+async def test_the_line_names_the_restricted_vocabulary(run: Run) -> None:
     screen = Line(SampleEars("listening"), "yes, no or stop")
     async with run(screen):
         assert "listening for yes, no or stop ..." in screen.line.text
         assert "ends it" not in screen.line.text
 
 
-async def test_words_from_the_decoder_are_data(run: Run) -> None:
+async def test_markup_in_decoded_words_is_shown_as_text(run: Run) -> None:
     screen = Line(SampleEars("speaking", "call \x1b[31m[/][@click=app.quit]"))
     async with run(screen) as pilot:
         assert "\x1b" not in screen.line.text

@@ -1,4 +1,4 @@
-"""Nothing that a terminal would obey reaches it, and in ASCII mode nothing but ASCII does."""
+"""Output cleaning: no control sequence reaches the terminal, and ASCII mode writes only ASCII."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_clean_leaves_one_visible_line() -> None:
 
 
 @given(st.text(max_size=40), st.booleans())
-def test_what_is_drawn_is_harmless_and_as_wide_as_it_was_measured(text: str, ascii: bool) -> None:
+def test_drawn_text_is_harmless_and_keeps_its_width(text: str, ascii: bool) -> None:
     drawn = harmless(text, ascii)
     assert cell_len(drawn) == cell_len(text)
     assert not OBEYED.search(drawn)
@@ -69,7 +69,7 @@ def test_what_is_drawn_is_harmless_and_as_wide_as_it_was_measured(text: str, asc
 
 
 @given(st.text(max_size=40))
-def test_cleaned_text_needs_no_more_cleaning(text: str) -> None:
+def test_cleaning_is_idempotent(text: str) -> None:
     assert clean(clean(text)) == clean(text)
     assert not FORBIDDEN.search(clean(text))
 
@@ -97,7 +97,7 @@ class Unclean(TangyScreen[None]):
         yield Label("ab\x1b[31m\u202ec", markup=False)
 
 
-async def test_the_filter_catches_what_a_widget_does_not_clean(run: Run) -> None:
+async def test_the_filter_cleans_the_output_of_every_widget(run: Run) -> None:
     async with run(Unclean()) as pilot:
         assert not FORBIDDEN.search(pilot.text())
 

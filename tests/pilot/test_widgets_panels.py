@@ -1,4 +1,4 @@
-"""Steps, policy, posteriors, log, status line: what they say, and that only changes are drawn."""
+"""Steps, policy, posteriors, log and status line: their content, and drawing only of changes."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ async def test_steps_are_numbered_lines_that_follow_the_end(run: Run) -> None:
         assert pilot.lines()[-1].startswith("30 facilitate")
 
 
-async def test_the_longest_steps_stand_on_one_line_of_80_columns(run: Run) -> None:
+async def test_the_longest_steps_fit_into_one_line_of_80_columns(run: Run) -> None:
     steps = Transcript()
     async with run(One(steps)) as pilot:
         steps.append("facilitate · ANR · card not in view -> move card closer (User 2), suggestion")
@@ -101,7 +101,7 @@ async def test_the_longest_steps_stand_on_one_line_of_80_columns(run: Run) -> No
         assert second.endswith("…")
 
 
-async def test_the_memory_of_steps_is_bounded_and_the_numbers_go_on(run: Run) -> None:
+async def test_the_list_of_steps_is_bounded_and_keeps_counting(run: Run) -> None:
     steps = Transcript(most=5)
     async with run(One(steps)) as pilot:
         for n in range(1, 13):
@@ -111,7 +111,7 @@ async def test_the_memory_of_steps_is_bounded_and_the_numbers_go_on(run: Run) ->
         assert lines == [f"{n:>2} step {n}" for n in range(8, 13)]
 
 
-async def test_steps_can_be_looked_through_by_keys(run: Run) -> None:
+async def test_steps_can_be_browsed_by_keys(run: Run) -> None:
     steps = Transcript()
     screen = One(steps)
     async with run(screen, (80, 18)) as pilot:
@@ -137,7 +137,7 @@ async def test_steps_can_be_looked_through_by_keys(run: Run) -> None:
         assert pilot.lines()[-1].startswith("41 step 41")
 
 
-async def test_fill_and_clear(run: Run) -> None:
+async def test_steps_can_be_filled_and_cleared(run: Run) -> None:
     steps = Transcript(empty="Nothing yet.")
     async with run(One(steps)) as pilot:
         assert "Nothing yet." in pilot.text()
@@ -155,7 +155,7 @@ async def test_fill_and_clear(run: Run) -> None:
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
-async def test_the_policy_as_it_looks(
+async def test_the_policy_matches_its_snapshot(
     run: Run, snapshot: SnapshotAssertion, size: tuple[int, int]
 ) -> None:
     table = PolicyTable(classes="panel")
@@ -165,7 +165,7 @@ async def test_the_policy_as_it_looks(
         assert pilot.text() == snapshot
 
 
-async def test_a_policy_row_says_all_of_it_at_every_width(run: Run) -> None:
+async def test_a_policy_row_is_complete_at_every_width(run: Run) -> None:
     table = PolicyTable()
     async with run(One(table), LARGE) as pilot:
         table.show(ROWS)
@@ -180,7 +180,7 @@ async def test_a_policy_row_says_all_of_it_at_every_width(run: Run) -> None:
             assert "never shown" in text or "0 !" in text
 
 
-async def test_only_the_rows_that_change_marks_are_drawn(run: Run) -> None:
+async def test_only_rows_with_changed_marks_are_drawn(run: Run) -> None:
     table = PolicyTable()
     async with run(One(table)) as pilot:
         table.show(ROWS, ROWS[0].situation)
@@ -211,7 +211,7 @@ async def test_policy_rows_can_be_chosen(run: Run) -> None:
         assert screen.messages[-1] == (3, ROWS[3])
 
 
-def test_bars_are_as_long_as_their_share() -> None:
+def test_the_length_of_a_bar_is_its_share() -> None:
     assert bar(0, 5) == "     "
     assert bar(1, 5) == "█████"
     assert bar(0.5, 5) == "██▌  "
@@ -223,7 +223,7 @@ def test_bars_are_as_long_as_their_share() -> None:
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
 @pytest.mark.parametrize("compact", [False, True])
-async def test_the_posteriors_as_they_look(
+async def test_the_posteriors_match_their_snapshot(
     run: Run, sample: Sample, snapshot: SnapshotAssertion, size: tuple[int, int], compact: bool
 ) -> None:
     view = Posteriors(compact=compact, classes="panel")
@@ -233,9 +233,7 @@ async def test_the_posteriors_as_they_look(
         assert pilot.text() == snapshot
 
 
-async def test_counts_mean_and_probability_are_those_of_the_beliefs(
-    run: Run, sample: Sample
-) -> None:
+async def test_counts_mean_and_probability_match_the_posteriors(run: Run, sample: Sample) -> None:
     view = Posteriors()
     async with run(One(view)) as pilot:
         view.show({"user1": {"neutral": Beta(8, 3), "praise": Beta(1, 1)}}, {"user1": "Rosa"})
@@ -249,7 +247,7 @@ async def test_counts_mean_and_probability_are_those_of_the_beliefs(
         assert "★" not in other
 
 
-async def test_equal_beliefs_have_no_star_however_much_they_rest_on(run: Run) -> None:
+async def test_equal_posteriors_have_no_star(run: Run) -> None:
     for compact in (False, True):
         view = Posteriors(compact=compact)
         async with run(One(view)) as pilot:
@@ -258,7 +256,7 @@ async def test_equal_beliefs_have_no_star_however_much_they_rest_on(run: Run) ->
             assert "★" not in pilot.text()
 
 
-async def test_what_is_settled_is_said_beside_the_name(run: Run) -> None:
+async def test_a_settled_strategy_is_shown_beside_the_name(run: Run) -> None:
     view = Posteriors()
     async with run(One(view)) as pilot:
         view.show({"u": {"neutral": Beta(2, 9), "praise": Beta(9, 2)}}, {"u": "Rosa"})
@@ -273,7 +271,7 @@ async def test_what_is_settled_is_said_beside_the_name(run: Run) -> None:
     "beliefs",
     [{"quiet": Beta(9, 2)}, {"neutral": Beta(1, 2), "praise": Beta(2, 60), "merry": Beta(2, 60)}],
 )
-async def test_one_alone_is_not_settled_nor_what_never_worked(
+async def test_a_single_or_unsuccessful_strategy_is_never_settled(
     run: Run, beliefs: dict[str, Beta]
 ) -> None:
     view = Posteriors()
@@ -284,7 +282,7 @@ async def test_one_alone_is_not_settled_nor_what_never_worked(
         assert len(beliefs) > 1 or "★" not in pilot.text()
 
 
-async def test_nothing_is_the_best_before_anything_is_known(run: Run) -> None:
+async def test_unknown_posteriors_have_no_best_strategy(run: Run) -> None:
     view = Posteriors()
     async with run(One(view)) as pilot:
         assert "Nothing is known" in pilot.text()
@@ -294,7 +292,7 @@ async def test_nothing_is_the_best_before_anything_is_known(run: Run) -> None:
         assert "user1" in pilot.text()
 
 
-async def test_only_the_belief_that_changed_is_drawn(run: Run, sample: Sample) -> None:
+async def test_only_the_changed_posterior_is_drawn(run: Run, sample: Sample) -> None:
     view = Posteriors()
     async with run(One(view), LARGE) as pilot:
         beliefs = sample.beliefs()
@@ -308,7 +306,7 @@ async def test_only_the_belief_that_changed_is_drawn(run: Run, sample: Sample) -
         assert {r.y for r in painted} <= {11, 12, 13, 14}  # the person's own lines
 
 
-def test_curves_lie_where_the_belief_lies() -> None:
+def test_a_curve_peaks_at_the_mode_of_the_posterior() -> None:
     flat = curve(Beta(1, 1), 12)
     assert len(set(flat)) == 1
     high = curve(Beta(40, 5), 12)
@@ -320,7 +318,7 @@ def test_curves_lie_where_the_belief_lies() -> None:
 # ------------------------------------------------------------------------- log, status line
 
 
-async def test_the_log_wraps_marks_and_forgets(run: Run) -> None:
+async def test_the_log_wraps_marks_and_drops_lines(run: Run) -> None:
     log = LogView(most=3)
     async with run(One(log)) as pilot:
         for n in range(4):
@@ -346,7 +344,7 @@ async def test_the_log_follows_its_end(run: Run) -> None:
 
 
 @pytest.mark.parametrize("width", [60, 66, 80, 100, 160])
-async def test_robot_and_stop_are_always_seen(run: Run, width: int) -> None:
+async def test_the_status_line_always_shows_robot_and_stop(run: Run, width: int) -> None:
     status = Status("teach", "link lost", "facilitate", 123, 4567, "Rosa's game", alarm=True)
     async with run(One(StatusLine(status)), (width, 18)) as pilot:
         line = pilot.lines()[0]
@@ -355,7 +353,7 @@ async def test_robot_and_stop_are_always_seen(run: Run, width: int) -> None:
         assert "facilitate" in line
 
 
-async def test_the_status_line_as_in_the_notes(run: Run) -> None:
+async def test_the_status_line_shows_mode_robot_game_and_step(run: Run) -> None:
     line = StatusLine(Status("teach", "OK", "help", 3, 12))
     async with run(One(line)) as pilot:
         assert pilot.lines()[0].split("  ")[0].strip() == (
@@ -384,7 +382,7 @@ def test_fit_shorten_and_wrap_count_cells() -> None:
     assert wrap("", 4) == [""]
 
 
-async def test_the_log_goes_on_at_its_end_after_it_became_smaller(run: Run) -> None:
+async def test_the_log_stays_at_its_end_after_shrinking(run: Run) -> None:
     log = LogView()
     screen = One(log)
     async with run() as pilot:
@@ -401,7 +399,7 @@ async def test_the_log_goes_on_at_its_end_after_it_became_smaller(run: Run) -> N
         assert log.is_vertical_scroll_end
 
 
-async def test_a_log_that_is_read_further_up_stays_there_when_its_size_changes(run: Run) -> None:
+async def test_a_scrolled_log_keeps_its_place_after_a_resize(run: Run) -> None:
     log = LogView()
     screen = One(log)
     async with run() as pilot:

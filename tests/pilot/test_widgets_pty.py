@@ -1,4 +1,4 @@
-"""The frame in a real pty: keys typed ahead, silence while idle, and every way out."""
+"""The frame in a real pty: keys typed ahead, silence while idle, and every exit."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def window() -> Iterator[Window]:
 
 
 @pytest.mark.slow
-def test_a_y_in_the_same_write_does_not_answer_and_a_later_one_does(window: Window) -> None:
+def test_only_a_y_in_a_later_write_answers(window: Window) -> None:
     window.type("call number\ry")
     window.until("Did you say: call number?")
     window.settle()
@@ -129,7 +129,7 @@ def test_a_y_in_the_same_write_does_not_answer_and_a_later_one_does(window: Wind
 
 
 @pytest.mark.slow
-def test_it_is_silent_while_nothing_happens(window: Window) -> None:
+def test_an_idle_program_writes_nothing(window: Window) -> None:
     assert window.read(1.5) == b""
     window.type("c")
     window.settle()
@@ -141,7 +141,7 @@ def test_it_is_silent_while_nothing_happens(window: Window) -> None:
 
 
 @pytest.mark.slow
-def test_ctrl_c_leaves_the_terminal_as_it_was(window: Window) -> None:
+def test_ctrl_c_restores_the_terminal(window: Window) -> None:
     window.type("\x03")
     assert window.status() == 0
     assert termios.tcgetattr(window.child) == window.before
@@ -151,7 +151,7 @@ def test_ctrl_c_leaves_the_terminal_as_it_was(window: Window) -> None:
 @pytest.mark.parametrize(
     ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["TERM", "HUP"]
 )
-def test_signals_leave_the_terminal_as_it_was(window: Window, number: int, code: int) -> None:
+def test_signals_restore_the_terminal(window: Window, number: int, code: int) -> None:
     os.kill(window.process.pid, number)
     assert window.status() == code
     assert termios.tcgetattr(window.child) == window.before
@@ -168,7 +168,7 @@ def test_the_mouse_can_be_switched_off_and_on(window: Window) -> None:
 
 
 @pytest.mark.slow
-def test_a_terminal_that_goes_away_ends_it(window: Window) -> None:
+def test_a_closed_terminal_ends_the_program(window: Window) -> None:
     os.close(window.child)
     os.close(window.terminal)
     window.child = window.terminal = -1
@@ -177,7 +177,7 @@ def test_a_terminal_that_goes_away_ends_it(window: Window) -> None:
 
 
 @pytest.mark.slow
-def test_a_small_window_says_so_and_loses_nothing(window: Window) -> None:
+def test_a_small_window_shows_a_message_and_loses_nothing(window: Window) -> None:
     window.type("call num")
     window.settle()
     window.resize(40, 10)

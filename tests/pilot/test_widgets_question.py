@@ -1,4 +1,4 @@
-"""The question that verifies a command: only a y that was typed after it was seen says yes."""
+"""The question that verifies a command: only a y typed after it appeared counts as yes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LARGE = (160, 45)
 
 
 class Asking(TangyScreen[None]):
-    """A command bar that verifies what it is given."""
+    """A command bar that verifies its commands."""
 
     AUTO_FOCUS = "#command-input"
 
@@ -86,7 +86,9 @@ async def ask(pilot: TangyPilot, text: str = "call number") -> None:
         ("2", Answer(False, 1), "call number"),
     ],
 )
-async def test_keys_that_answer(run: Run, key: str, answer: Answer, left: str) -> None:
+async def test_answering_keys_close_the_question(
+    run: Run, key: str, answer: Answer, left: str
+) -> None:
     screen = Asking()
     async with run(screen) as pilot:
         await ask(pilot)
@@ -100,7 +102,7 @@ async def test_keys_that_answer(run: Run, key: str, answer: Answer, left: str) -
 @pytest.mark.parametrize(
     "key", ["enter", "space", "3", "4", "0", "tab", "up", "x", "ctrl+y", "j", "f5", "backspace"]
 )
-async def test_keys_that_do_nothing(run: Run, key: str) -> None:
+async def test_other_keys_leave_the_question_open(run: Run, key: str) -> None:
     screen = Asking()
     async with run(screen) as pilot:
         await ask(pilot)
@@ -123,9 +125,7 @@ async def test_a_y_in_the_same_write_as_enter_is_swallowed(run: Run) -> None:
         assert screen.deleted == 0
 
 
-async def test_keys_of_the_first_moment_do_not_answer_and_later_ones_do(
-    run: Run, clock: StillClock
-) -> None:
+async def test_keys_of_the_first_moment_do_not_answer(run: Run, clock: StillClock) -> None:
     screen = Asking()
     clock.now = monotonic() + 1000
     async with run(screen, clock=clock) as pilot:
@@ -139,7 +139,7 @@ async def test_keys_of_the_first_moment_do_not_answer_and_later_ones_do(
         assert screen.answers == [Answer(True)]
 
 
-async def test_keys_behind_a_number_neither_answer_the_next_question_nor_land_in_the_bar(
+async def test_keys_typed_after_a_number_are_dropped(
     run: Run,
 ) -> None:
     class AskingAgain(TangyScreen[None]):
@@ -182,7 +182,7 @@ async def test_only_the_first_answer_counts(run: Run) -> None:
         assert pilot.app.screen is screen
 
 
-async def test_the_text_of_a_no_can_be_changed_and_given_again(run: Run) -> None:
+async def test_a_rejected_text_can_be_edited_and_given_again(run: Run) -> None:
     screen = Asking()
     async with run(screen) as pilot:
         await ask(pilot)
@@ -215,7 +215,7 @@ async def test_the_question_names_behaviour_words_confidence_and_alternatives(ru
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
-async def test_it_fits_with_all_that_it_can_say(run: Run, size: tuple[int, int]) -> None:
+async def test_the_longest_question_fits(run: Run, size: tuple[int, int]) -> None:
     async with run(size=size) as pilot:
         dialog = QuestionDialog(
             "ask to move the card closer",
@@ -233,7 +233,7 @@ async def test_it_fits_with_all_that_it_can_say(run: Run, size: tuple[int, int])
 
 
 class FakeTerminal:
-    """Notes what is asked of a terminal, which answers when it is told to."""
+    """A terminal that records queries and answers on demand."""
 
     def __init__(self, pilot: TangyPilot, session: TerminalSession, **settings: Any) -> None:
         self.written: list[str] = []
@@ -265,7 +265,7 @@ async def test_a_y_counts_only_after_the_terminal_has_answered(run: Run, clock: 
         assert screen.answers == [Answer(True)]
 
 
-async def test_where_a_multiplexer_answers_from_afar_the_yes_is_another_digit_each_time(
+async def test_the_yes_key_behind_a_remote_multiplexer_is_a_changing_digit(
     run: Run,
 ) -> None:
     screen = Asking()
@@ -302,7 +302,7 @@ async def test_a_confirmation_takes_the_same_digit(run: Run) -> None:
         assert answers == [True]
 
 
-async def test_help_over_a_question_names_the_digit_that_says_yes(run: Run) -> None:
+async def test_help_over_a_question_names_the_digit_for_yes(run: Run) -> None:
     for dialog in (QuestionDialog("call number"), ConfirmDialog("Forget User 2?")):
         async with run() as pilot:
             FakeTerminal(pilot, TerminalSession(), setting="digit")
@@ -315,7 +315,7 @@ async def test_help_over_a_question_names_the_digit_that_says_yes(run: Run) -> N
             assert "y" not in [key for key, _ in told.here]
 
 
-async def test_help_elsewhere_names_y_only_where_questions_take_it(run: Run) -> None:
+async def test_help_elsewhere_names_the_current_yes_key(run: Run) -> None:
     for setting, told in (("y", "press y and"), ("digit", "the digit it shows")):
         screen = Asking()
         screen.HELP = teach_keys.HELP  # type: ignore[misc]
@@ -324,7 +324,7 @@ async def test_help_elsewhere_names_y_only_where_questions_take_it(run: Run) -> 
             assert told in help_for(screen).paragraphs[0]
 
 
-async def test_confirm_takes_y_and_n_only(run: Run) -> None:
+async def test_confirm_accepts_only_y_and_n(run: Run) -> None:
     for key, result in (("y", True), ("n", False), ("escape", False)):
         answers: list[bool | None] = []
         async with run() as pilot:
@@ -336,9 +336,7 @@ async def test_confirm_takes_y_and_n_only(run: Run) -> None:
             assert answers == [result]
 
 
-async def test_confirm_and_message_drop_keys_that_were_typed_before_they_were_seen(
-    run: Run, clock: StillClock
-) -> None:
+async def test_confirm_and_message_drop_keys_typed_ahead(run: Run, clock: StillClock) -> None:
     clock.now = monotonic() + 1000
     async with run(clock=clock) as pilot:
         for dialog in (ConfirmDialog("Sure?"), MessageDialog("Read this.")):

@@ -1,4 +1,4 @@
-"""The room: who is where, who asks, what each is doing; and what a walk puts on the terminal."""
+"""The room: places, requests and actions of people; and the painting of a walk."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def robot_at(lines: list[str]) -> tuple[int, int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(60, 18), SMALL, (120, 40), LARGE])
 @pytest.mark.parametrize("people", [1, 2, 3, 4, 5, 6, 7, 8])
-async def test_everybody_is_seen_at_every_size(
+async def test_everybody_is_visible_at_every_size(
     run: Run, sample: Sample, size: tuple[int, int], people: int
 ) -> None:
     sample = sample.of(people)
@@ -84,7 +84,7 @@ async def test_everybody_is_seen_at_every_size(
 
 
 @pytest.mark.parametrize("width", [20, 56, 158])
-def test_a_plan_never_gives_out_more_rows_than_there_are(width: int) -> None:
+def test_a_plan_never_uses_more_rows_than_exist(width: int) -> None:
     for height in range(1, 60):
         for people in (1, 8):
             rows = plan(width, height, people)
@@ -92,7 +92,7 @@ def test_a_plan_never_gives_out_more_rows_than_there_are(width: int) -> None:
             assert rows.floor >= rows.sprite
 
 
-async def test_what_each_does_stands_under_the_name(run: Run, sample: Sample) -> None:
+async def test_the_action_of_each_person_is_below_the_name(run: Run, sample: Sample) -> None:
     screen = RoomScreen(sample)
     async with run(screen) as pilot:
         screen.room.show(sample.scene())
@@ -104,7 +104,7 @@ async def test_what_each_does_stands_under_the_name(run: Run, sample: Sample) ->
         assert abs(lines[names - 1].index("?1") - middle) <= 2
 
 
-async def test_long_names_and_doings_are_cut_with_an_ellipsis(run: Run, sample: Sample) -> None:
+async def test_long_names_and_actions_are_cut_with_an_ellipsis(run: Run, sample: Sample) -> None:
     sample.people = tuple(
         type(p)(p.id, "Wilhelmina Konstantinopolous von der Vogelweide") for p in sample.people
     )
@@ -119,7 +119,7 @@ async def test_long_names_and_doings_are_cut_with_an_ellipsis(run: Run, sample: 
         assert "Vogelweide" not in text
 
 
-async def test_the_robot_walks_from_where_it_is_seen_and_arrives(
+async def test_the_robot_moves_from_its_drawn_place_to_the_goal(
     run: Run, sample: Sample, clock: StillClock
 ) -> None:
     screen = RoomScreen(sample)
@@ -148,7 +148,7 @@ async def test_the_robot_walks_from_where_it_is_seen_and_arrives(
         assert "▸" not in pilot.text()
 
 
-async def test_pace_makes_it_faster_and_skip_ends_it(
+async def test_pace_speeds_the_robot_up_and_skip_ends_the_walk(
     run: Run, sample: Sample, clock: StillClock
 ) -> None:
     screen = RoomScreen(sample)
@@ -168,7 +168,7 @@ async def test_pace_makes_it_faster_and_skip_ends_it(
         assert screen.arrived[-1] == "user2"
 
 
-async def test_directions(run: Run, sample: Sample, clock: StillClock) -> None:
+async def test_the_robot_faces_its_direction(run: Run, sample: Sample, clock: StillClock) -> None:
     screen = RoomScreen(sample.of(1))
     async with run(screen, (120, 40), clock=clock) as pilot:
         for place, mark in (("user1", "▾"), (FRONT, "▴")):
@@ -205,7 +205,7 @@ async def test_a_frame_paints_only_the_cells_of_the_robot(
             await pilot.pause()
 
 
-async def test_the_same_scene_again_paints_nothing(run: Run, sample: Sample) -> None:
+async def test_an_unchanged_scene_paints_nothing(run: Run, sample: Sample) -> None:
     screen = RoomScreen(sample)
     async with run(screen) as pilot:
         screen.room.show(sample.scene())
@@ -218,7 +218,7 @@ async def test_the_same_scene_again_paints_nothing(run: Run, sample: Sample) -> 
         assert len(screen.painted) == 2  # heads and names
 
 
-async def test_a_walk_outlives_a_new_size(run: Run, sample: Sample, clock: StillClock) -> None:
+async def test_a_walk_survives_a_resize(run: Run, sample: Sample, clock: StillClock) -> None:
     screen = RoomScreen(sample)
     async with run(screen, LARGE, clock=clock) as pilot:
         screen.room.drive("user4", 4.0)
@@ -234,7 +234,7 @@ async def test_a_walk_outlives_a_new_size(run: Run, sample: Sample, clock: Still
         robot_at(pilot.lines())
 
 
-async def test_speech_is_cut_to_the_rows_there_are(run: Run, sample: Sample) -> None:
+async def test_speech_is_cut_to_the_available_rows(run: Run, sample: Sample) -> None:
     screen = RoomScreen(sample)
     async with run(screen) as pilot:
         screen.room.say("The number is B 7. " * 40)
@@ -247,7 +247,7 @@ async def test_speech_is_cut_to_the_rows_there_are(run: Run, sample: Sample) -> 
         assert "The number" not in pilot.text()
 
 
-async def test_the_card_is_drawn_where_there_is_room_once_the_robot_is_there(
+async def test_the_card_is_drawn_after_the_robot_arrives(
     run: Run, sample: Sample, clock: StillClock
 ) -> None:
     screen = RoomScreen(sample)
@@ -278,7 +278,7 @@ async def test_the_card_is_drawn_where_there_is_room_once_the_robot_is_there(
         assert "[• •]" in pilot.text()
 
 
-async def test_a_person_that_nobody_knows_is_no_reason_to_fail(run: Run, sample: Sample) -> None:
+async def test_an_unknown_person_causes_no_error(run: Run, sample: Sample) -> None:
     screen = RoomScreen(sample)
     async with run(screen) as pilot:
         card = CardView("nobody", (1,), 0, 0)
@@ -288,7 +288,7 @@ async def test_a_person_that_nobody_knows_is_no_reason_to_fail(run: Run, sample:
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
-async def test_as_it_looks(
+async def test_the_room_matches_its_snapshot(
     run: Run, sample: Sample, snapshot: SnapshotAssertion, size: tuple[int, int]
 ) -> None:
     screen = RoomScreen(sample)
@@ -301,7 +301,7 @@ async def test_as_it_looks(
         assert pilot.text() == snapshot
 
 
-async def test_a_robot_that_is_held_stays_where_it_is_seen_and_walks_on_when_let_go(
+async def test_a_held_robot_stays_in_place_until_its_release(
     run: Run, sample: Sample, clock: StillClock
 ) -> None:
     screen = RoomScreen(sample)
@@ -332,7 +332,7 @@ async def test_a_robot_that_is_held_stays_where_it_is_seen_and_walks_on_when_let
         assert screen.arrived == ["user4"]
 
 
-async def test_where_the_robot_has_been_taken_while_it_was_held_it_walks_to(
+async def test_a_robot_moved_during_a_hold_walks_there_afterwards(
     run: Run, sample: Sample, clock: StillClock
 ) -> None:
     screen = RoomScreen(sample)
@@ -351,7 +351,7 @@ async def test_where_the_robot_has_been_taken_while_it_was_held_it_walks_to(
 
 @pytest.mark.parametrize("people", [9, 12])
 @pytest.mark.parametrize("width", [78, 118, 158])
-def test_each_table_of_a_hall_is_seen_to_both_its_ends(people: int, width: int) -> None:
+def test_each_table_of_a_hall_is_drawn_to_both_ends(people: int, width: int) -> None:
     room = load_room("hall")
     grid = Grid(room, people, plan(width, 8, people))
     assert len(grid.tables) == 3
@@ -360,7 +360,7 @@ def test_each_table_of_a_hall_is_seen_to_both_its_ends(people: int, width: int) 
         assert cards and left < cards[0] - 1 and cards[-1] + 1 < right
 
 
-async def test_names_in_a_full_hall_are_whole_and_who_is_away_is_marked(
+async def test_names_in_a_full_hall_are_complete_and_absences_marked(
     run: Run, sample: Sample
 ) -> None:
     names = [f"Person{chr(65 + number)}" for number in range(12)]
@@ -375,7 +375,7 @@ async def test_names_in_a_full_hall_are_whole_and_who_is_away_is_marked(
     assert (text.count("●"), text.count("○")) == (10, 2)
 
 
-async def test_marks_cover_neither_the_card_nor_stand_behind_the_table(
+async def test_marks_neither_cover_the_card_nor_lie_behind_the_table(
     run: Run, sample: Sample
 ) -> None:
     screen = RoomScreen(sample)

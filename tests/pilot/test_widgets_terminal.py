@@ -1,4 +1,4 @@
-"""What the terminal at hand is taken for."""
+"""Detecting the capabilities of the terminal."""
 
 from __future__ import annotations
 
@@ -44,16 +44,18 @@ UTF8 = "en_GB.UTF-8"
         ({"TERM": "xterm-256color", "LANG": "C", "LC_CTYPE": "C.utf8"}, TerminalKind()),
     ],
 )
-def test_kinds(environ: dict[str, str], expected: TerminalKind) -> None:
+def test_the_environment_determines_the_kind_of_terminal(
+    environ: dict[str, str], expected: TerminalKind
+) -> None:
     assert kind(environ) == expected
 
 
-def test_ascii_can_be_asked_for_and_refused() -> None:
+def test_ascii_can_be_forced_and_refused() -> None:
     assert kind({"TERM": "xterm-256color", "LANG": UTF8}, True).ascii
     assert not kind({"TERM": "linux", "LANG": UTF8}, False).ascii
 
 
-def test_lines_where_a_screen_makes_no_sense() -> None:
+def test_an_unsuitable_terminal_gets_the_line_mode() -> None:
     dumb = kind({"TERM": "dumb", "LANG": UTF8})
     assert not dumb.full_screen
     assert "TERM=dumb" in dumb.reason
@@ -82,7 +84,7 @@ def loaded(module: str) -> set[str]:
     return set(done.stdout.split())
 
 
-def test_looking_at_the_terminal_needs_no_textual() -> None:
+def test_detecting_the_terminal_loads_no_textual() -> None:
     assert not loaded("tangy_tui.ui.terminal") & {"textual", "rich"}
 
 
