@@ -44,7 +44,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
 
 @pytest.mark.slow
-def test_a_yes_before_its_question_was_seen_is_told_to_be_too_early(start: Start) -> None:
+def test_a_yes_before_its_question_appears_is_rejected_as_too_early(start: Start) -> None:
     far = start(Link(delay=0.3), **SSH)
     ask_blindly(far, "y", 0.2)
     assert ASKED in far.text
@@ -55,7 +55,7 @@ def test_a_yes_before_its_question_was_seen_is_told_to_be_too_early(start: Start
 
 
 @pytest.mark.slow
-def test_what_answers_for_the_terminal_makes_the_yes_a_digit(start: Start) -> None:
+def test_the_yes_key_is_a_digit_if_a_multiplexer_answers(start: Start) -> None:
     far = start(Link(delay=0.3), "near", TMUX="a-socket,1,0", **SSH)
     assert blind(far, "y", 3, 0.5) == 0
     ask(far)
@@ -69,14 +69,14 @@ def test_what_answers_for_the_terminal_makes_the_yes_a_digit(start: Start) -> No
 
 
 @pytest.mark.slow
-def test_where_nothing_answers_a_remote_yes_is_a_digit(start: Start) -> None:
+def test_the_yes_key_of_a_silent_remote_terminal_is_a_digit(start: Start) -> None:
     far = start(Link(delay=0.2), "nobody", **SSH)
     ask(far)
     assert yes_of(far) in "456789"
 
 
 @pytest.mark.slow
-def test_beside_the_machine_y_is_the_yes_whatever_answers(start: Start) -> None:
+def test_the_yes_key_of_a_local_terminal_is_y(start: Start) -> None:
     far = start(Link(), "nobody")
     ask(far)
     far.run(0.3)
@@ -98,7 +98,7 @@ def test_beside_the_machine_y_is_the_yes_whatever_answers(start: Start) -> None:
         Link(0.1, rate=2000),
     ],
 )
-def test_no_blind_yes_is_taken(start: Start, link: Link) -> None:
+def test_no_blind_yes_is_accepted(start: Start, link: Link) -> None:
     far = start(link, **SSH)
     assert blind(far, "y", 12, 2 * link.delay + link.jitter + 0.05) == 0
     # The terminal is asked behind the question, and jitter may hold up what asks it.

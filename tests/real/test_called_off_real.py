@@ -1,4 +1,4 @@
-"""A robot that is being switched on is left off however the program ends, and nothing runs on."""
+"""Cancelling the opening of a robot: every exit of the program leaves no process running."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def assert_all_over(family: Family, started: set[int], meanwhile: Callable[[], o
 
 @pytest.mark.parametrize("ending", ENDINGS)
 @pytest.mark.parametrize("stage", STAGES)
-def test_on_a_terminal_it_is_left_off(
+def test_a_cancelled_opening_on_a_terminal_leaves_no_process(
     folder: Path, family: Family, stage: str, ending: str
 ) -> None:
     command = [TANGY, "live", "--bench", "--begin", "--data", str(folder)]
@@ -84,7 +84,7 @@ def test_on_a_terminal_it_is_left_off(
     ("number", "status"), [(signal.SIGHUP, 129), (signal.SIGTERM, 143), (signal.SIGINT, 130)]
 )
 @pytest.mark.parametrize("stage", STAGES)
-def test_without_a_screen_it_is_left_off(
+def test_a_cancelled_opening_without_a_screen_leaves_no_process(
     folder: Path, family: Family, stage: str, number: int, status: int
 ) -> None:
     with subprocess.Popen(  # noqa: S603
@@ -112,7 +112,7 @@ def deaf() -> Iterator[int]:
 
 
 @pytest.mark.parametrize("ending", ["HUP", "esc"])
-def test_a_robot_whose_devices_do_not_answer_is_left_off(
+def test_a_cancelled_opening_of_a_silent_robot_leaves_no_process(
     folder: Path, tmp_path: Path, family: Family, deaf: int, ending: str
 ) -> None:
     drivers = [
@@ -141,9 +141,7 @@ def test_a_robot_whose_devices_do_not_answer_is_left_off(
         terminal.end()
 
 
-def test_what_the_program_had_started_ends_by_itself_where_that_was_killed(
-    folder: Path, family: Family
-) -> None:
+def test_child_processes_end_after_the_program_is_killed(folder: Path, family: Family) -> None:
     command = [TANGY, "live", "--bench", "--begin", "--data", str(folder)]
     terminal = Terminal(command, environment=family.environment)
     try:

@@ -64,7 +64,7 @@ def log(folder: Path, *options: str) -> str:
     return subprocess.run(show, check=True, capture_output=True, text=True).stdout  # noqa: S603
 
 
-def test_the_dialog_and_the_log_say_what_came_of_each_call(
+def test_the_dialog_and_the_log_show_the_result_of_each_call(
     folder: Path, robot_beside: DeviceSimulator
 ) -> None:
     command = folder / "ring"
@@ -105,7 +105,7 @@ def test_the_dialog_and_the_log_say_what_came_of_each_call(
     assert "Somebody pressed the emergency stop." in (folder / "messages").read_text()
 
 
-def test_who_presses_the_button_on_the_chest_screen_was_reached(
+def test_a_press_on_the_chest_screen_answers_the_call(
     folder: Path, robot_beside: DeviceSimulator
 ) -> None:
     terminal, tablet = program(robot_beside, folder, SENT), None

@@ -1,4 +1,4 @@
-"""Cameras as they are: files by OpenCV's writer, a folder, and a stream that does what it likes."""
+"""Real cameras: video files written by OpenCV, a folder, and a faulty stream."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class TestFiles:
     @pytest.mark.parametrize(
         ("name", "code"), [("a.avi", "MJPG"), ("a.mkv", "FFV1"), ("a.mp4", "mp4v")]
     )
-    async def test_every_picture_of_a_video_comes_once_and_in_order(
+    async def test_every_picture_of_a_video_is_read_once_and_in_order(
         self, name: str, code: str, tmp_path: Path
     ) -> None:
         source = find_camera(str(film(tmp_path / name, code)), each=True)
@@ -65,9 +65,7 @@ class TestFiles:
         assert camera.sight.state == "ENDED"
 
     @pytest.mark.slow
-    async def test_a_folder_gives_its_pictures_and_leaves_out_what_is_none(
-        self, tmp_path: Path
-    ) -> None:
+    async def test_a_folder_skips_files_that_are_no_pictures(self, tmp_path: Path) -> None:
         for number, picture in enumerate(PICTURES):
             cv2.imwrite(str(tmp_path / f"{number + 8}.png"), picture)
         (tmp_path / "8b.png").write_bytes(b"this is no picture")
@@ -79,14 +77,14 @@ class TestFiles:
         whole = [frame for frame in frames if frame.width == 160]
         assert [differs(frame.image(), n) for n, frame in enumerate(whole[-6:])] == [0] * 6
 
-    async def test_a_file_that_is_over_begins_again_when_asked(self, tmp_path: Path) -> None:
+    async def test_a_file_can_be_looped(self, tmp_path: Path) -> None:
         path = film(tmp_path / "a.avi", "MJPG")
         async with Camera(find_camera(str(path), each=True, loop=True)) as camera:
             frames = [await camera.frame() for _ in range(15)]
         assert [frame and frame.seq for frame in frames] == list(range(15))
 
     @pytest.mark.slow
-    async def test_a_video_comes_in_its_own_time_and_the_newest_counts(
+    async def test_a_video_plays_in_real_time_and_the_newest_picture_counts(
         self, tmp_path: Path
     ) -> None:
         path = film(tmp_path / "a.avi", "MJPG", rate=20)
@@ -103,7 +101,7 @@ class TestFiles:
             ("a.png", b"nor I a picture", "no pictures that can be read"),
         ],
     )
-    async def test_what_cannot_be_read_is_an_error_in_a_sentence(
+    async def test_an_unreadable_file_is_an_error_in_one_sentence(
         self, name: str, content: bytes, word: str, tmp_path: Path
     ) -> None:
         (tmp_path / name).write_bytes(content)
@@ -111,7 +109,7 @@ class TestFiles:
             with pytest.raises(CameraError, match=word):
                 await camera.frame(wait=PATIENCE)
 
-    async def test_a_picture_can_be_asked_for_in_a_size(self, tmp_path: Path) -> None:
+    async def test_a_picture_can_be_requested_in_a_size(self, tmp_path: Path) -> None:
         path = film(tmp_path / "a.avi", "MJPG")
         async with Camera(find_camera(str(path), each=True)) as camera:
             small = await camera.frame(fit=(40, 90))
@@ -123,7 +121,7 @@ class TestFiles:
         assert (whole.width, whole.height, whole.seq) == (160, 120, small.seq + 1)
 
     @pytest.mark.slow
-    async def test_a_playlist_reads_nothing_else(self, tmp_path: Path) -> None:
+    async def test_a_playlist_opens_no_other_file(self, tmp_path: Path) -> None:
         path = tmp_path / "list.m3u8"
         path.write_text("#EXTM3U\n#EXTINF:10,\nhttp://127.0.0.1:9/x.ts\n#EXT-X-ENDLIST\n")
         async with Camera(find_camera(str(path))) as camera:
@@ -138,7 +136,7 @@ def server() -> Iterator[CameraServer]:
 
 
 class TestStream:
-    """One camera through all its troubles; each is named, and so is its end."""
+    """One camera through all its faults; the beginning and the end of each are reported."""
 
     @pytest.mark.slow
     @pytest.mark.parametrize(
@@ -153,7 +151,7 @@ class TestStream:
             ("hang", "DISCONNECTED"),
         ],
     )
-    async def test_trouble_is_named_and_its_end_too(
+    async def test_the_beginning_and_the_end_of_each_fault_are_reported(
         self, mode: str, state: State, server: CameraServer
     ) -> None:
         server.mode = "live"
@@ -169,7 +167,7 @@ class TestStream:
         assert after.seq > before.seq and after.stamp > before.stamp
 
     @pytest.mark.slow
-    async def test_a_camera_that_is_unplugged_is_opened_anew(self) -> None:
+    async def test_an_unplugged_camera_is_opened_again(self) -> None:
         with CameraServer() as server:
             async with Camera(find_camera(server.url)) as camera:
                 await until(camera, "OK")
@@ -180,7 +178,7 @@ class TestStream:
                 await until(camera, "OK")
 
     @pytest.mark.slow
-    async def test_only_whole_pictures_are_given(self) -> None:
+    async def test_only_complete_pictures_are_returned(self) -> None:
         with CameraServer() as server:
             async with Camera(find_camera(server.url)) as camera:
                 given = [await camera.frame(wait=PATIENCE)]
@@ -195,7 +193,7 @@ class TestStream:
 
 class TestProcess:
     @pytest.mark.slow
-    async def test_recording_ends_with_ctrl_c_and_says_what_there_is(
+    async def test_ctrl_c_ends_a_recording_with_a_summary(
         self, server: CameraServer, tmp_path: Path
     ) -> None:
         server.mode = "live"
@@ -215,9 +213,7 @@ class TestProcess:
         assert len(names) % 2 == 0  # none without what is known of it
 
     @pytest.mark.slow
-    async def test_one_that_is_killed_is_started_again_and_owes_nothing(
-        self, server: CameraServer
-    ) -> None:
+    async def test_a_killed_camera_process_is_restarted(self, server: CameraServer) -> None:
         server.mode = "live"
         async with Camera(find_camera(server.url)) as camera:
             first = await camera.frame(wait=PATIENCE)
@@ -228,7 +224,7 @@ class TestProcess:
         assert later is not None and later.seq > first.seq + 20
 
     @pytest.mark.slow
-    async def test_one_that_hangs_as_a_whole_is_ended_and_started_again(
+    async def test_a_frozen_camera_process_is_killed_and_restarted(
         self, server: CameraServer
     ) -> None:
         server.mode = "live"
@@ -244,7 +240,7 @@ class TestProcess:
             os.kill(hung, 0)
 
     @pytest.mark.slow
-    async def test_one_that_hangs_in_a_read_is_ended_and_started_again(
+    async def test_a_camera_process_that_hangs_in_a_read_is_restarted(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr("tangy_hw.drivers.camera.OPEN_SECONDS", 0.5)
@@ -260,7 +256,7 @@ class TestProcess:
             frame = await asyncio.wait_for(asked, PATIENCE)
         assert frame is not None and differs(frame.image(), 0) < 12
 
-    async def test_closing_ends_it_and_whoever_waits_gets_nothing(
+    async def test_closing_ends_the_process_and_pending_requests(
         self, server: CameraServer
     ) -> None:
         server.mode = "hang"
@@ -275,7 +271,7 @@ class TestProcess:
             os.kill(process, 0)
 
     @pytest.mark.slow
-    async def test_what_libraries_print_goes_to_the_log(
+    async def test_the_output_of_libraries_goes_to_the_log(
         self, tmp_path: Path, capfd: pytest.CaptureFixture[str]
     ) -> None:
         (tmp_path / "a.avi").write_bytes(b"nothing")
@@ -287,7 +283,7 @@ class TestProcess:
         assert capfd.readouterr() == ("", "")
 
     @pytest.mark.slow
-    async def test_a_wait_that_is_over_gives_nothing(self) -> None:
+    async def test_a_timed_out_wait_returns_nothing(self) -> None:
         async with Camera(find_camera("/dev/video93")) as camera:
             assert await camera.frame(wait=0.05) is None
             await until(camera, "DISCONNECTED")

@@ -1,4 +1,4 @@
-"""The chest screen in a real browser: what people read, how large it is, and when the link goes."""
+"""The chest screen in a real browser: texts, sizes, and a lost link."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ async def outside(tab: Tab) -> str:
     )
 
 
-async def test_a_called_number_is_very_large_and_black_on_white(
+async def test_a_called_number_is_large_and_black_on_white(
     screen: WebChestScreen, browser: Browser, tmp_path: Path
 ) -> None:
     for size in (SMALL, LARGE):
@@ -135,7 +135,7 @@ async def test_a_called_number_is_very_large_and_black_on_white(
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
-async def test_whatever_is_said_is_all_on_the_screen(
+async def test_every_text_fits_on_the_screen(
     screen: WebChestScreen, browser: Browser, size: tuple[int, int]
 ) -> None:
     tab = await opened(browser, screen, size)
@@ -156,7 +156,7 @@ async def test_whatever_is_said_is_all_on_the_screen(
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
-async def test_each_option_of_a_question_has_a_line_of_its_own(
+async def test_each_option_of_a_question_has_its_own_line(
     screen: WebChestScreen, browser: Browser, size: tuple[int, int]
 ) -> None:
     tab = await opened(browser, screen, size)
@@ -180,7 +180,7 @@ async def test_each_option_of_a_question_has_a_line_of_its_own(
 
 @pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
 @pytest.mark.parametrize("shape", [(300, 900), (900, 300)])
-async def test_a_picture_is_large_and_its_line_is_under_it(
+async def test_a_picture_is_large_with_its_caption_below(
     screen: WebChestScreen,
     browser: Browser,
     tmp_path: Path,
@@ -210,7 +210,7 @@ async def test_a_picture_is_large_and_its_line_is_under_it(
     assert await tab.value("document.getElementById('file').offsetHeight") == 0
 
 
-async def test_a_picture_that_cannot_be_shown_leaves_its_line(
+async def test_a_broken_picture_leaves_its_caption(
     screen: WebChestScreen, browser: Browser, tmp_path: Path
 ) -> None:
     tab = await opened(browser, screen, LARGE)
@@ -222,9 +222,7 @@ async def test_a_picture_that_cannot_be_shown_leaves_its_line(
         assert await tab.value("document.getElementById('file').offsetHeight") == 0
 
 
-async def test_what_looks_like_a_page_is_shown_as_it_is_written(
-    screen: WebChestScreen, browser: Browser
-) -> None:
+async def test_markup_in_a_text_is_shown_as_text(screen: WebChestScreen, browser: Browser) -> None:
     tab = await opened(browser, screen, LARGE)
     wicked = "<img src=x onerror=document.title='got-you'>&amp;</script>\u2028`${1}"
     await screen.show(Picture(wicked, wicked, (wicked,), wicked))
@@ -234,7 +232,7 @@ async def test_what_looks_like_a_page_is_shown_as_it_is_written(
     assert await tab.value("document.title") == "Chest screen"
 
 
-async def test_it_says_that_the_link_is_lost_and_comes_back_by_itself(browser: Browser) -> None:
+async def test_the_page_reports_a_lost_link_and_reconnects(browser: Browser) -> None:
     screen = WebChestScreen(port=0)
     await screen.start()
     tab = await opened(browser, screen, SMALL)
@@ -254,7 +252,7 @@ async def test_it_says_that_the_link_is_lost_and_comes_back_by_itself(browser: B
     await again.close()
 
 
-async def test_a_tablet_that_hangs_is_noticed(screen: WebChestScreen, browser: Browser) -> None:
+async def test_a_hanging_tablet_is_noticed(screen: WebChestScreen, browser: Browser) -> None:
     tab = await opened(browser, screen, SMALL)
     await until(lambda: screen.reading().state == "OK", PATIENCE)
     hanging = asyncio.ensure_future(
@@ -265,7 +263,7 @@ async def test_a_tablet_that_hangs_is_noticed(screen: WebChestScreen, browser: B
     await until(lambda: screen.reading().state == "OK", PATIENCE)
 
 
-async def test_a_tablet_is_paired_once_and_stays_so(browser: Browser, tmp_path: Path) -> None:
+async def test_a_tablet_stays_paired(browser: Browser, tmp_path: Path) -> None:
     pairing = keep_pairing(tmp_path)
     screen = WebChestScreen(port=0, pairing=pairing)
     await screen.start()
@@ -299,7 +297,7 @@ async def test_a_tablet_is_paired_once_and_stays_so(browser: Browser, tmp_path: 
     await again.close()
 
 
-async def test_a_tablet_that_is_not_known_any_more_asks_for_the_code(browser: Browser) -> None:
+async def test_an_unknown_tablet_asks_for_the_code(browser: Browser) -> None:
     screen = WebChestScreen(port=0)
     await screen.start()
     tab = await opened(browser, screen, SMALL)
@@ -318,7 +316,7 @@ async def test_a_tablet_that_is_not_known_any_more_asks_for_the_code(browser: Br
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
-async def test_the_question_for_the_code_is_all_on_the_screen(
+async def test_the_question_for_the_code_fits_on_the_screen(
     screen: WebChestScreen, browser: Browser, size: tuple[int, int]
 ) -> None:
     tab = await browser.tab()
@@ -334,7 +332,7 @@ async def test_the_question_for_the_code_is_all_on_the_screen(
     assert await tab.value(high) >= 44  # a finger finds it
 
 
-async def test_a_press_on_the_button_of_an_open_call_is_thanked_for(
+async def test_a_press_on_a_call_button_is_acknowledged(
     browser: Browser, screen: WebChestScreen
 ) -> None:
     await screen.show(CALL)

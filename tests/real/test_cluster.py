@@ -31,7 +31,7 @@ PATIENCE = 60.0
 
 
 class Cluster:
-    """A scheduler and its workers, each a process of the test's own, on the loopback only."""
+    """A scheduler and its workers as child processes, only on the loopback."""
 
     def __init__(self, folder: Path, workers: int) -> None:
         self._folder = folder
@@ -85,7 +85,7 @@ def sweep(groups: int = 6) -> Sweep:
 
 
 @pytest.mark.slow
-def test_a_cluster_gives_what_this_machine_gives_and_is_left_running(
+def test_a_cluster_gives_the_same_results_as_this_machine(
     two_workers: Cluster, tmp_path: Path
 ) -> None:
     told: list[int] = []
@@ -113,7 +113,7 @@ def test_the_command_line_works_there(two_workers: Cluster, tmp_path: Path) -> N
     assert json.loads(done.stdout)["experiment"] == 2
 
 
-def test_workers_with_other_code_are_not_used(
+def test_workers_with_other_code_are_refused(
     two_workers: Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster, "versions_there", lambda client: {"a worker": "other"})
@@ -122,7 +122,7 @@ def test_workers_with_other_code_are_not_used(
 
 
 @pytest.mark.slow
-def test_a_cluster_without_workers_is_said(tmp_path: Path) -> None:
+def test_a_cluster_without_workers_is_reported(tmp_path: Path) -> None:
     empty = Cluster(tmp_path, 0)
     try:
         with pytest.raises(TangyError, match="has no workers yet"):
@@ -132,7 +132,7 @@ def test_a_cluster_without_workers_is_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_cluster_that_ends_meanwhile_is_said_and_what_was_done_is_kept(tmp_path: Path) -> None:
+def test_a_lost_cluster_is_reported_and_its_results_kept(tmp_path: Path) -> None:
     short_lived = Cluster(tmp_path, 1)
     data = tmp_path / "data"
 
@@ -152,7 +152,7 @@ def test_a_cluster_that_ends_meanwhile_is_said_and_what_was_done_is_kept(tmp_pat
 
 
 @pytest.mark.slow
-def test_nobody_there_is_said_within_seconds(
+def test_a_missing_scheduler_is_reported_within_seconds(
     tangy_in_process: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
     begun = monotonic()
@@ -164,7 +164,9 @@ def test_nobody_there_is_said_within_seconds(
 
 
 @pytest.mark.slow
-def test_without_dask_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_dask_is_reported_with_the_extra_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(TangyError, match=r"tangy\[cluster\]"):
         sweep().run(Where(cluster="tcp://127.0.0.1:8786"))

@@ -1,4 +1,4 @@
-"""A long session: each screen, written cell by cell, equals the one that is drawn whole."""
+"""A long session: each screen, drawn by differential updates, equals a full redraw."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SESSION: tuple[str | tuple[int, int], ...] = (
 
 
 @pytest.mark.slow
-def test_every_screen_of_a_session_equals_the_one_that_is_drawn_whole(tmp_path: Path) -> None:
+def test_every_screen_of_a_session_equals_a_full_redraw(tmp_path: Path) -> None:
     command = [TANGY, "--data", str(tmp_path), "teach", "--teacher", "ann", "--seed", "3"]
     terminal = Terminal(command)
     try:

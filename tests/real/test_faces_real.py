@@ -1,4 +1,4 @@
-"""A face before a camera that lives: enrolled, and known again by a vote."""
+"""A face before a live camera: enrolled, and recognised by a vote."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def looking_at(camera: CameraServer, person: int) -> None:
 
 
 @pytest.mark.slow
-def test_somebody_before_a_camera_is_enrolled_and_known(tangy: str, tmp_path: Path) -> None:
+def test_a_person_before_a_camera_is_enrolled_and_recognised(tangy: str, tmp_path: Path) -> None:
     def faces(*arguments: str) -> subprocess.CompletedProcess[str]:
         command = [tangy, "faces", *arguments, "--json", "--data", str(tmp_path / "d")]
         return subprocess.run(command, capture_output=True, text=True, timeout=60)  # noqa: S603

@@ -1,4 +1,4 @@
-"""No frame is written in which no cell is otherwise than before."""
+"""Every written frame changes at least one cell."""
 
 from __future__ import annotations
 
@@ -14,9 +14,7 @@ QUIET = 0.3  # s
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
-def test_teaching_writes_no_frame_that_changes_nothing(
-    tmp_path: Path, size: tuple[int, int]
-) -> None:
+def test_teaching_writes_no_frame_without_a_change(tmp_path: Path, size: tuple[int, int]) -> None:
     columns, lines = size
     command = [TANGY, "--data", str(tmp_path), "teach", "--teacher", "ann", "--seed", "3"]
     terminal = FramedTerminal(command, columns=columns, lines=lines)

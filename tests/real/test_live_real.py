@@ -48,7 +48,7 @@ def play(game: Supervision, steps: int) -> list[Event]:
     return told
 
 
-def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(workspace: Workspace) -> None:
+def test_a_robot_on_the_bench_calls_visits_reads_cards_and_returns(workspace: Workspace) -> None:
     book = load_faults(workspace.robot)
     with open_bench(workspace, seed=3, stepped=True, pace=2, book=book, kind=BenchedWorld) as world:
         game = games(workspace, world)
@@ -70,7 +70,7 @@ def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(workspace: Works
         assert len(world.truth()["called"]) == len(world.called)  # people heard every call
 
 
-def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(workspace: Workspace) -> None:
+def test_faults_on_the_bench_are_diagnosed_and_recovered(workspace: Workspace) -> None:
     book = load_faults(workspace.robot)
     faults = [read_injection(text) for text in ("laser-disconnected@3", "camera-occluded@6")]
     with open_bench(
@@ -86,7 +86,7 @@ def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(workspace:
         game.leave()
 
 
-def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> None:
+def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
     command = [
         TANGY,
         "live",
@@ -138,7 +138,7 @@ def robot_process_of(program: int) -> int:
     return found
 
 
-def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path) -> None:
+def test_a_robot_process_frozen_for_four_seconds_opens_one_dialog(folder: Path) -> None:
     command = [
         TANGY,
         "live",
@@ -188,7 +188,7 @@ def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path
         terminal.end()
 
 
-def test_without_drivers_it_says_what_to_do(folder: Path) -> None:
+def test_a_robot_without_drivers_is_refused_with_advice(folder: Path) -> None:
     done = subprocess.run(  # noqa: S603
         [TANGY, "live", "--headless", "--data", str(folder)], capture_output=True, text=True
     )
@@ -197,7 +197,7 @@ def test_without_drivers_it_says_what_to_do(folder: Path) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_faults_can_stand_in_a_file(folder: Path, tmp_path: Path) -> None:
+def test_faults_can_be_read_from_a_file(folder: Path, tmp_path: Path) -> None:
     wrong = tmp_path / "faults.txt"
     wrong.write_text("# what is to come\nlaser-disconected@3\n")
     done = subprocess.run(  # noqa: S603
@@ -209,7 +209,7 @@ def test_faults_can_stand_in_a_file(folder: Path, tmp_path: Path) -> None:
     assert json.dumps(done.stdout) == '""'
 
 
-def test_staff_run_a_live_game_by_lines_and_the_log_says_who_did_what(folder: Path) -> None:
+def test_staff_control_a_live_game_by_lines_and_the_log_names_them(folder: Path) -> None:
     lines = [
         "pause", "where", "go on", "wait until called", "stop the robot", "drive left", "go on",
         "drive left 1", "wait until called", "call again", "call back", "take over",

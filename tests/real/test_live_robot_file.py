@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
 @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGSTOP, signal.SIGHUP])
-def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
+def test_a_robot_from_a_file_plays_and_stops_if_the_program_ends_or_hangs(
     folder: Path, robot_beside: DeviceSimulator, ending: signal.Signals
 ) -> None:
     terminal = program(robot_beside, folder)
@@ -47,7 +47,7 @@ def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
 UP, DOWN = "\x1b[A", "\x1b[B"
 
 
-def test_a_tablet_is_paired_by_what_the_live_screen_tells(
+def test_a_tablet_is_paired_with_the_code_of_the_live_screen(
     folder: Path, robot_beside: DeviceSimulator
 ) -> None:
     terminal = program(robot_beside, folder)

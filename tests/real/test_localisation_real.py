@@ -56,24 +56,22 @@ def followed(folder: str, way: Sequence[Moment], seed: int) -> list[float]:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_real_robot_is_followed(seed: int, folder: str, way: Sequence[Moment]) -> None:
+def test_a_real_robot_is_localised(seed: int, folder: str, way: Sequence[Moment]) -> None:
     median, high = np.percentile(followed(folder, way, seed), [50, 95])
     assert median <= 0.06 and high <= 0.15
 
 
-def test_it_never_doubts_while_all_is_well(folder: str, way: Sequence[Moment]) -> None:
+def test_an_undisturbed_robot_is_never_reported_lost(folder: str, way: Sequence[Moment]) -> None:
     localisation = Localisation(building(folder), np.random.default_rng(700), way[0].truth)
     assert doubts(localisation, way) == 0
 
 
-def test_nine_of_ten_robots_that_were_carried_off_find_themselves(
-    folder: str, way: Sequence[Moment]
-) -> None:
+def test_nine_of_ten_kidnapped_robots_localise_again(folder: str, way: Sequence[Moment]) -> None:
     found = [kidnapped(building(folder), way, seed) for seed in range(800, 810)]
     assert sum(scans is not None and scans <= 400 for scans in found) >= 9
 
 
-def test_wheels_that_count_backwards_as_forwards_are_noticed(folder: str) -> None:
+def test_odometry_with_the_wrong_sign_is_noticed(folder: str) -> None:
     log = logged(folder)
     assert max(disagreements(moments(log, restored=False))) > 0.3
     assert max(disagreements(moments(log))) <= 0.3
@@ -83,7 +81,7 @@ def test_wheels_that_count_backwards_as_forwards_are_noticed(folder: str) -> Non
     any(shutil.which(program) is None for program in PROGRAMS),
     reason="MRPT is not installed (Debian's mrpt-apps)",
 )
-def test_it_is_followed_nearly_as_well_as_by_mrpt(
+def test_the_error_is_at_most_a_quarter_above_that_of_mrpt(
     folder: str, way: Sequence[Moment], tmp_path: Path
 ) -> None:
     theirs = np.percentile(mrpt_errors(building(folder), way, tmp_path), [50, 95])

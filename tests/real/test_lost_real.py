@@ -1,4 +1,4 @@
-"""A robot that is not told where it stands, and finds its place on a map by itself."""
+"""Global localisation: a robot without a start pose finds its place on a map."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FOUND = 0.15  # metres by which it may be off
 
 
 @pytest.mark.parametrize("seed", [5, 9])
-def test_it_finds_itself_wherever_it_stands_and_drives_to_the_front(
+def test_a_robot_without_a_start_pose_localises_and_drives_to_the_front(
     workspace: Workspace, tmp_path: Path, seed: int
 ) -> None:
     map_ = tmp_path / "room.yaml"

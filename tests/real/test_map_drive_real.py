@@ -1,4 +1,4 @@
-"""A drive on the bench by commands of the keys, recorded, matched and drawn as a map."""
+"""A drive by hand on the bench: recorded, matched and drawn as a map."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OFF = 0.15  # m that a wall of the map may be off
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
-def test_a_drive_by_hand_is_recorded_and_its_map_has_the_rooms_walls(tmp_path: Path) -> None:
+def test_the_map_of_a_drive_by_hand_has_the_walls_of_the_room(tmp_path: Path) -> None:
     log = tmp_path / "a-scans.log"
     bench = DeviceSimulator(
         seed=3, people={"user1": "Rosa"}, stepped=False, activity="bingo", robot="tangy"

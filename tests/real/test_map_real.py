@@ -1,4 +1,4 @@
-"""A log of a real building, from the poses that its wheels counted: its loops are closed."""
+"""A log of a real building, from odometry poses: its loops are closed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RESOLUTION = 0.05
 @pytest.mark.slow
 @pytest.mark.elsewhere
 @pytest.mark.skipif(not LOG.is_file(), reason="TANGY_LASER_LOG names no folder with the log")
-def test_a_building_that_matching_alone_tears_is_closed() -> None:
+def test_a_map_that_scan_matching_tears_is_closed_by_the_pose_graph() -> None:
     scans = sparse(PlacedScan(one.scan, one.odometry) for one in read_log(LOG))
     before = judged(aligned(scans), RESOLUTION)
     after = with_loops_closed(before, RESOLUTION)

@@ -43,7 +43,7 @@ asyncio.run(listen())
 
 
 class Running:
-    """A process that is spoken to, and what it says."""
+    """A process, its input and its output."""
 
     def __init__(self, process: Process) -> None:
         self.process = process
@@ -78,7 +78,7 @@ class Running:
 
 
 class Robot:
-    """A data folder, and what runs in it."""
+    """A data folder, and the processes that use it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -129,7 +129,7 @@ async def test_five_seconds_arrive_exactly_through_two_programs(robot: Robot) ->
 
 
 @pytest.mark.slow
-async def test_a_wav_is_taken_and_its_header_is_not_heard(robot: Robot) -> None:
+async def test_a_wav_is_forwarded_without_its_header(robot: Robot) -> None:
     listener = await robot.listener()
     mic = await robot.mic()
     await mic.until("Connected")
@@ -139,7 +139,7 @@ async def test_a_wav_is_taken_and_its_header_is_not_heard(robot: Robot) -> None:
 
 
 @pytest.mark.slow
-async def test_what_is_killed_is_found_again_and_nothing_old_is_heard(robot: Robot) -> None:
+async def test_a_restarted_listener_hears_only_new_sound(robot: Robot) -> None:
     mic = await robot.mic()
     await mic.until("does not listen yet")
     await mic.say(b"\1\1" * 2_000)
@@ -156,7 +156,7 @@ async def test_what_is_killed_is_found_again_and_nothing_old_is_heard(robot: Rob
 
 
 @pytest.mark.slow
-async def test_a_killed_mic_is_missed_and_the_next_one_is_heard(robot: Robot) -> None:
+async def test_a_new_microphone_replaces_a_killed_one(robot: Robot) -> None:
     listener = await robot.listener()
     for word in (SOUND[:3_000], SOUND[3_000:6_000]):
         mic = await robot.mic()
@@ -169,7 +169,7 @@ async def test_a_killed_mic_is_missed_and_the_next_one_is_heard(robot: Robot) ->
 
 
 @pytest.mark.slow
-async def test_of_two_the_newer_is_heard_and_the_older_ends(robot: Robot) -> None:
+async def test_the_newer_of_two_microphones_takes_over(robot: Robot) -> None:
     listener = await robot.listener()
     older = await robot.mic()
     await older.until("Connected")
@@ -184,7 +184,7 @@ async def test_of_two_the_newer_is_heard_and_the_older_ends(robot: Robot) -> Non
 
 
 @pytest.mark.slow
-async def test_another_place_may_be_named(robot: Robot, tmp_path: Path) -> None:
+async def test_another_socket_can_be_named(robot: Robot, tmp_path: Path) -> None:
     source = open_source(f"socket:{tmp_path / 'here'}")
     hearing = asyncio.ensure_future(anext(source))
     mic = await robot.mic("--socket", str(tmp_path / "here"))
@@ -204,7 +204,7 @@ async def test_another_place_may_be_named(robot: Robot, tmp_path: Path) -> None:
         (wav(bytes(3_000), rate=44_100, channels=2), "44,100 samples a second, 2 channels"),
     ],
 )
-async def test_what_is_no_such_sound_is_refused_in_a_line(
+async def test_input_that_is_no_sound_is_refused_in_one_line(
     robot: Robot, content: bytes, word: str
 ) -> None:
     mic = await robot.mic()
@@ -217,7 +217,7 @@ async def test_what_is_no_such_sound_is_refused_in_a_line(
 
 
 @pytest.mark.slow
-def test_on_a_terminal_it_says_what_to_type(open_terminal: OpenTerminal) -> None:
+def test_a_terminal_as_input_prints_the_commands_to_type(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("mic", columns=250)
     assert terminal.wait() == 2
     assert "arecord -q -t raw -f S16_LE -r 16000 -c 1 | ssh ROBOT tangy mic" in terminal.text
@@ -225,7 +225,7 @@ def test_on_a_terminal_it_says_what_to_type(open_terminal: OpenTerminal) -> None
 
 
 @pytest.mark.slow
-def test_on_a_terminal_there_is_a_bar(tmp_path: Path) -> None:
+def test_a_terminal_shows_the_level_bar(tmp_path: Path) -> None:
     fifo = tmp_path / "sound"
     os.mkfifo(fifo)
     loud = b"\x00\x20\x00\xe0" * 4_000

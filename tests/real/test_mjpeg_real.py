@@ -1,4 +1,4 @@
-"""The driver of cameras looks through the simulated network camera, and notices its faults."""
+"""The camera driver reads the simulated network camera, and notices its faults."""
 
 from __future__ import annotations
 
@@ -42,7 +42,9 @@ async def filming() -> AsyncIterator[MjpegServer]:
 
 
 @pytest.mark.slow
-async def test_the_camera_driver_likes_it_and_notices_every_fault(filming: MjpegServer) -> None:
+async def test_the_camera_driver_reads_the_stream_and_notices_every_fault(
+    filming: MjpegServer,
+) -> None:
     def is_in(*states: str) -> bool:
         return camera.sight.state in states
 

@@ -39,7 +39,7 @@ def say(text: str, file: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_a_folder_of_voices_is_counted(tangy: str, tmp_path: Path) -> None:
+def test_a_folder_of_recordings_is_evaluated(tangy: str, tmp_path: Path) -> None:
     folder = tmp_path / "set"
     say("call the next number", folder / "call number" / "slt-001.wav")
     say("tell a joke", folder / "tell a joke-slt.wav")
@@ -79,7 +79,7 @@ def minute(activity: Activity, people: tuple[Person, ...], tmp_path: Path) -> Pa
 
 
 @pytest.mark.slow
-def test_a_recorded_check_is_stored_and_can_be_used(
+def test_the_settings_of_a_recorded_check_are_stored_and_used(
     tangy: str, tmp_path: Path, minute: Path
 ) -> None:
     folder = tmp_path / "data"

@@ -1,4 +1,4 @@
-"""Pronunciations through the real espeak-ng: what it would say is read, and said as written."""
+"""Pronunciations through the real espeak-ng: its phones are read, and given phones spoken."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(
 WORDS = ("rosa", "margaret", "judge", "thing", "measure", "boy", "cow", "bird", "yellow", "hello")
 
 
-def test_usual_words_are_guessed_as_the_dictionary_has_them() -> None:
+def test_guesses_of_common_words_match_the_dictionary() -> None:
     right = [word for word in WORDS if espeak_phones(word) in pronounce(word)]
     assert len(right) >= len(WORDS) - 2
 
@@ -37,16 +37,16 @@ def said(text: str) -> str:
 @pytest.mark.slow
 @settings(max_examples=15)
 @given(st.sampled_from(sorted(PHONES - {"AA", "AH", "ER", "R"})))
-def test_a_consonant_or_vowel_is_said_as_it_is_written(phone: str) -> None:
+def test_espeak_speaks_each_phone_as_written(phone: str) -> None:
     phones = f"M {phone} M" if phone[0] in "AEIOU" else f"{phone} EY M"
     assert said(to_espeak(phones)) == phones
 
 
-def test_a_name_is_said_as_it_is_written_not_as_it_is_spelled() -> None:
+def test_a_name_is_spoken_by_its_phones_and_not_by_its_spelling() -> None:
     assert said(to_espeak("SH IH V AO N")) == "SH IH V AO N"
     asyncio.run(hear("SH IH V AO N", sink="null"))
 
 
 @pytest.mark.parametrize("word", ["-v", "--help", "[[r]]", "<b>", "a" * 200, "'"])
-def test_odd_words_are_no_options_and_give_phones_at_the_most(word: str) -> None:
+def test_odd_words_are_not_parsed_as_options(word: str) -> None:
     assert set(suggest(word).split()) <= PHONES

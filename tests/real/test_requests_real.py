@@ -39,7 +39,7 @@ async def stale(source: RequestSource, state: str) -> None:
 
 
 class TestMqtt:
-    async def test_messages_ask_and_take_back(self) -> None:
+    async def test_messages_set_and_clear_requests(self) -> None:
         async with Broker() as broker, Topic(broker.url, 4, PEOPLE) as source:
             await asyncio.wait_for(broker.listened_to(), PATIENCE)
             assert broker.subscribed == ["tangy/requests/#"]
@@ -53,7 +53,7 @@ class TestMqtt:
             await until(source, 4)
             assert source.reading().state == OK
 
-    async def test_a_broker_that_goes_is_told_and_comes_back(self) -> None:
+    async def test_a_lost_broker_is_reported_until_it_returns(self) -> None:
         told: list[str] = []
         async with Broker() as broker:
             source = Topic(broker.url, 4, PEOPLE)
@@ -74,7 +74,7 @@ class TestMqtt:
         assert told[0].startswith("Listening at mqtt://127.0.0.1:")
         assert "the connection was lost. It is tried again." in told[1]
 
-    async def test_one_that_refuses_us_is_told(self) -> None:
+    async def test_a_refusing_broker_is_reported(self) -> None:
         async with Broker() as broker:
             broker.refuses = True
             source = Topic(broker.url, 4)
@@ -99,7 +99,7 @@ class TestSigns:
         return tmp_path
 
     @pytest.mark.slow
-    async def test_signs_ask_at_their_seats_until_they_are_turned_down(
+    async def test_signs_are_requests_of_their_seats_until_they_go_down(
         self, pictures: Path
     ) -> None:
         source = open_requests(f"signs:{pictures}", load_room(), PEOPLE, corners=CORNERS, each=True)
@@ -118,7 +118,7 @@ class TestSigns:
             with pytest.raises(RequestError, match="no video that can be read"):
                 await until(source, 1)
 
-    async def test_a_camera_that_is_not_there_is_stale(self) -> None:
+    async def test_a_missing_camera_is_stale(self) -> None:
         source = open_requests("signs:/dev/video93", load_room(), PEOPLE, corners=CORNERS)
         async with source:
             await stale(source, STALE)

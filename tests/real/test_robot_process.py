@@ -1,4 +1,4 @@
-"""Whatever becomes of the program, the robot stops; and whatever becomes of the robot is said."""
+"""The robot stops if the program fails, and the program reports failures of the robot process."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
 class Program:
-    """A program on a terminal of its own that drives the robot up and down."""
+    """A program on its own terminal that drives the robot up and down."""
 
     def __init__(self, bench: DeviceSimulator) -> None:
         self.terminal, theirs = pty.openpty()
@@ -98,7 +98,7 @@ def seconds_to_stop(bench: DeviceSimulator) -> float:
 
 
 @pytest.mark.parametrize("ending", ["killed", "hung", "hung up"])
-def test_the_base_stops_when_the_program_has_ended_or_hangs(
+def test_the_base_stops_if_the_program_ends_or_hangs(
     bench: DeviceSimulator, program: Program, ending: str
 ) -> None:
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
@@ -115,7 +115,7 @@ def test_the_base_stops_when_the_program_has_ended_or_hangs(
     assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
 
 
-def test_a_program_that_lives_again_does_not_drive_on_by_itself(
+def test_a_program_that_continues_does_not_resume_the_drive(
     bench: DeviceSimulator, program: Program
 ) -> None:
     program.process.send_signal(signal.SIGSTOP)
@@ -140,7 +140,7 @@ def is_there(process: int) -> bool:
     return stat.rpartition(")")[2].split()[0] != "Z"
 
 
-def test_a_robot_process_ends_with_its_program_also_where_its_pipe_stays_open() -> None:
+def test_a_robot_process_ends_with_its_program_despite_an_open_pipe() -> None:
     command = f"exec 3<&0; {shlex.join(CHILD)} $$ <&3 & echo $!; sleep 1"
     with subprocess.Popen(  # noqa: S602 - our own program
         command, shell=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE
@@ -178,9 +178,7 @@ def seconds_to_zero(bench: DeviceSimulator) -> float:
     return time.monotonic() - began + since_scan
 
 
-def test_a_laser_that_falls_silent_has_the_robot_told_to_stand(
-    bench: DeviceSimulator, link: RobotLink
-) -> None:
+def test_a_silent_laser_stops_the_robot(bench: DeviceSimulator, link: RobotLink) -> None:
     told, stood = [], []
     for number in range(TRIALS):
         drive = link.ask("go", to=[[8.0, 3.0, 1.57], [2.0, 3.0, 1.57]][number % 2])
@@ -198,7 +196,7 @@ def test_a_laser_that_falls_silent_has_the_robot_told_to_stand(
     assert median(stood) <= ZERO + BRAKES
 
 
-def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
+def test_a_killed_robot_process_is_reported_and_restarted(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=[8.0, 3.0, 1.57])
@@ -217,7 +215,7 @@ def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
     assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
 
 
-def test_a_robot_process_that_was_frozen_stands_until_it_is_told_to_go_on(
+def test_a_frozen_robot_process_stays_stopped_until_release(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=[8.0, 3.0, 1.57])
@@ -244,7 +242,7 @@ def test_a_robot_process_that_was_frozen_stands_until_it_is_told_to_go_on(
     assert link.beat().frozen == 0.0
 
 
-def test_driven_by_hand_at_the_table_it_is_no_faster_than_it_may_and_stands_before_it(
+def test_driving_by_hand_is_slow_near_the_table_and_stops_before_it(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     """The table's top is above the scanner: that it is there, the map has to tell."""
@@ -275,7 +273,7 @@ def test_driven_by_hand_at_the_table_it_is_no_faster_than_it_may_and_stands_befo
     drive(0.3, 0.0, lambda truth: not truth["moving"] and "laser" in link.state.hazard)
 
 
-def test_lines_that_make_no_sense_are_answered_and_the_robot_process_lives(
+def test_nonsense_lines_are_answered_and_do_not_end_the_process(
     bench: DeviceSimulator,
 ) -> None:
     wrong = [

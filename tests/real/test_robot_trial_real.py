@@ -1,4 +1,4 @@
-"""`tangy doctor --robot` finds what answers on a robot's wires; what froze is known by its age."""
+"""`tangy doctor --robot` tests the devices of a robot; a frozen device is noticed by its age."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ async def work(scanner: ScipServer, cameras: MjpegServer) -> None:
 @pytest.mark.skipif(
     shutil.which("espeak-ng") is None, reason="espeak-ng is not installed: no voice"
 )
-async def test_doctor_tries_what_a_robots_profile_names(tmp_path: Path) -> None:
+async def test_doctor_tests_the_devices_of_a_profile(tmp_path: Path) -> None:
     scanner, cameras = ScipServer(), MjpegServer()
     await scanner.start()
     await cameras.start()
@@ -90,7 +90,7 @@ screen = {{ kind = "page", port = 0 }}
     await cameras.close()
 
 
-async def test_a_scanner_that_froze_is_stale_though_its_connection_stands() -> None:
+async def test_a_frozen_scanner_is_stale_despite_its_connection() -> None:
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-c", SCANNER, stdout=asyncio.subprocess.PIPE
     )

@@ -159,7 +159,7 @@ async def linked(ros: Ros) -> AsyncIterator[Rosbridge]:
     await bridge.close()
 
 
-async def test_it_drives_and_stands_still_when_told_or_when_nothing_is_told(ros: Ros) -> None:
+async def test_the_base_drives_and_stops_by_command_or_timeout(ros: Ros) -> None:
     async with linked(ros) as bridge:
         base = RosBase(bridge)
         await base.start()
@@ -188,7 +188,7 @@ async def test_it_drives_and_stands_still_when_told_or_when_nothing_is_told(ros:
         await base.close()
 
 
-async def test_scans_joints_voice_and_diagnoses_are_those_of_ros(ros: Ros) -> None:
+async def test_scans_joints_voice_and_diagnostics_work_over_ros(ros: Ros) -> None:
     async with linked(ros) as bridge:
         told, laser, button = RosDiagnostics(bridge), RosLaser(bridge), RosStopButton(bridge)
         limbs = {"head": Limb("head", ("neck nod", "neck shake"), (-35, -80), (30, 80))}
@@ -220,7 +220,7 @@ async def test_scans_joints_voice_and_diagnoses_are_those_of_ros(ros: Ros) -> No
             await device.close()
 
 
-async def test_a_robot_or_a_bridge_that_is_frozen_is_seen_by_age(ros: Ros) -> None:
+async def test_a_frozen_robot_or_bridge_is_noticed_by_age(ros: Ros) -> None:
     async with linked(ros) as bridge:
         base = RosBase(bridge)
         await base.start()
@@ -234,7 +234,7 @@ async def test_a_robot_or_a_bridge_that_is_frozen_is_seen_by_age(ros: Ros) -> No
         await base.close()
 
 
-async def test_a_bridge_that_was_killed_is_found_again(ros: Ros) -> None:
+async def test_a_killed_bridge_is_reconnected(ros: Ros) -> None:
     async with linked(ros) as bridge:
         base = RosBase(bridge)
         await base.start()
@@ -252,7 +252,7 @@ async def test_a_bridge_that_was_killed_is_found_again(ros: Ros) -> None:
         await base.close()
 
 
-async def test_move_base_drives_to_a_goal_gives_one_up_and_finds_no_way(ros: Ros) -> None:
+async def test_move_base_reaches_cancels_and_rejects_goals(ros: Ros) -> None:
     async with linked(ros) as bridge:
         navigator, base = RosNavigator(bridge), RosBase(bridge)
         await navigator.start()
@@ -282,7 +282,7 @@ async def test_move_base_drives_to_a_goal_gives_one_up_and_finds_no_way(ros: Ros
         await base.close()
 
 
-async def test_a_client_that_others_wrote_understands_our_server() -> None:
+async def test_roslibpy_understands_our_server() -> None:
     if importlib.util.find_spec("roslibpy") is None:
         pytest.skip("roslibpy is not installed")
 

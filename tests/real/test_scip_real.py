@@ -1,4 +1,4 @@
-"""SCIP 2.0 as others speak it: MRPT and hokuyolx read our scanner, and we read it over a cable."""
+"""SCIP 2.0 with other software: MRPT and hokuyolx read our scanner; our driver over a cable."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ async def turning() -> AsyncIterator[Turning]:
 
 
 @needs_mrpt
-async def test_mrpt_reads_every_scan_as_it_was(turning: Turning, tmp_path: Path) -> None:
+async def test_mrpt_reads_every_scan_unchanged(turning: Turning, tmp_path: Path) -> None:
     settings = tmp_path / "grabber.ini"
     settings.write_text(GRABBER.format(folder=tmp_path, port=turning.server.port))
     grabber = await asyncio.create_subprocess_exec(
@@ -122,7 +122,7 @@ async def test_mrpt_reads_every_scan_as_it_was(turning: Turning, tmp_path: Path)
         assert np.abs(row - wanted)[REACHED].max() < 0.0011  # it writes millimetres
 
 
-async def test_hokuyolx_reads_scans_one_by_one_and_in_a_row(turning: Turning) -> None:
+async def test_hokuyolx_reads_single_and_continuous_scans(turning: Turning) -> None:
     hokuyolx = pytest.importorskip("hokuyolx", reason="hokuyolx is not installed")
 
     def use() -> None:
@@ -153,9 +153,7 @@ async def test_hokuyolx_reads_scans_one_by_one_and_in_a_row(turning: Turning) ->
 
 @needs_socat
 @pytest.mark.parametrize("scanner", [URG, UTM])
-async def test_the_driver_reads_over_a_serial_cable_and_after_it_was_pulled_out(
-    scanner: Scanner, tmp_path: Path
-) -> None:
+async def test_the_driver_survives_a_pulled_serial_cable(scanner: Scanner, tmp_path: Path) -> None:
     pytest.importorskip("serial", reason="pyserial is not installed")
     ends = [tmp_path / "scanner", tmp_path / "robot"]
     server = ScipServer(scanner)
@@ -184,7 +182,7 @@ async def test_the_driver_reads_over_a_serial_cable_and_after_it_was_pulled_out(
     await server.close()
 
 
-async def test_the_driver_takes_over_from_who_left_a_scanner_measuring() -> None:
+async def test_the_driver_takes_over_a_measuring_scanner() -> None:
     pytest.importorskip("serial", reason="pyserial is not installed")
     server = ScipServer(URG)
     path = server.serve_serial()

@@ -1,4 +1,4 @@
-"""What has been wiped off a terminal comes back: by a key, after a stop, in another size."""
+"""Redrawing a wiped terminal: by a key, after a suspension, and in another size."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def teaching(tmp_path: Path) -> Iterator[Terminal]:
 
 
 @pytest.mark.slow
-def test_a_wiped_screen_comes_back_whole(teaching: Terminal) -> None:
+def test_a_wiped_screen_is_redrawn(teaching: Terminal) -> None:
     shown = teaching.text
     teaching.wipe()
     teaching.type("\x0c")
@@ -46,7 +46,7 @@ def test_a_wiped_screen_comes_back_whole(teaching: Terminal) -> None:
 
 
 @pytest.mark.slow
-def test_a_letter_costs_tens_of_bytes_and_a_question_a_few_thousand(teaching: Terminal) -> None:
+def test_a_letter_and_a_question_write_few_bytes(teaching: Terminal) -> None:
     teaching.type("call numbe")
     teaching.until("call numbe")
     teaching.settle(QUIET)

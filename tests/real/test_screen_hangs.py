@@ -1,4 +1,4 @@
-"""A screen that hangs stops the robot, although the rest of the program lives."""
+"""A hanging screen stops the robot, although the rest of the program runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def moves(bench: DeviceSimulator) -> bool:
     return bool(bench.do("truth")["truth"]["moving"])
 
 
-def test_the_robot_stops_when_a_screen_does_not_say_any_more_that_it_lives(
+def test_the_robot_stops_without_a_heartbeat_of_the_screen(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=FAR)
@@ -37,7 +37,7 @@ def test_the_robot_stops_when_a_screen_does_not_say_any_more_that_it_lives(
     wait_until(lambda: link.state.hazard == "")
 
 
-def test_a_program_without_a_screen_need_not_say_it(
+def test_a_program_without_a_screen_needs_no_heartbeat(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     link.ask("go", to=FAR)

@@ -1,4 +1,4 @@
-"""What the robot process tells of its cameras: how they are, small pictures, the last card."""
+"""The cameras of the robot process: their state, small pictures, and the last card."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def link() -> Iterator[RobotLink]:
         bench.close()
 
 
-async def test_cameras_pictures_and_cards_come_over_the_wires(link: RobotLink) -> None:
+async def test_camera_states_pictures_and_cards_arrive_over_the_link(link: RobotLink) -> None:
     robot = load_robot()
     sensors = LinkedSensors(link, robot, load_activity("bingo").deck)
     assert (sensors.cameras, sensors.card_device) == (("camera",), "camera")

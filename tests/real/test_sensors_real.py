@@ -1,4 +1,4 @@
-"""The cameras of a robot, open together: what each says, sees and reads, and that they end."""
+"""All cameras of a robot at once: their states, pictures, cards, and their end."""
 
 from __future__ import annotations
 
@@ -38,9 +38,7 @@ def cards(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> Path:
 
 
 @pytest.mark.slow
-async def test_the_last_card_is_read_as_long_as_somebody_looks(
-    cards: Path, activity: Activity
-) -> None:
+async def test_cards_are_read_only_while_they_are_shown(cards: Path, activity: Activity) -> None:
     robot = load_robot()
     sources = camera_sources(robot, [f"camera={cards}"])
     async with CameraHub(robot, sources, activity.deck) as sensors:
@@ -55,7 +53,7 @@ async def test_the_last_card_is_read_as_long_as_somebody_looks(
 
 
 @pytest.mark.slow
-async def test_what_is_no_card_is_told_and_the_last_one_kept(
+async def test_a_picture_without_a_card_keeps_the_last_card(
     cards: Path, activity: Activity, tmp_path: Path
 ) -> None:
     for number in range(8):
@@ -74,7 +72,7 @@ async def test_what_is_no_card_is_told_and_the_last_one_kept(
 
 
 @pytest.mark.slow
-async def test_each_camera_says_how_it_is_and_gives_small_pictures() -> None:
+async def test_each_camera_has_a_state_and_small_pictures() -> None:
     robot = load_robot()
     with CameraServer(1) as one, CameraServer(2) as other:
         other.mode = "covered"
@@ -93,7 +91,7 @@ async def test_each_camera_says_how_it_is_and_gives_small_pictures() -> None:
 
 
 @pytest.mark.slow
-async def test_they_are_open_as_long_as_anybody_is_in_it_and_leave_nothing() -> None:
+async def test_cameras_close_with_their_last_user() -> None:
     robot = load_robot()
     before = asyncio.all_tasks()
     with CameraServer() as server:
@@ -122,13 +120,13 @@ async def test_they_are_open_as_long_as_anybody_is_in_it_and_leave_nothing() -> 
         (["camera=none.avi"], "none.avi: there is no such file"),
     ],
 )
-def test_a_source_that_is_none_is_refused_in_a_sentence(given: list[str], said: str) -> None:
+def test_an_invalid_source_is_refused_in_one_sentence(given: list[str], said: str) -> None:
     with pytest.raises(CameraError) as caught:
         camera_sources(load_robot(), given)
     assert said in str(caught.value)
 
 
-def test_the_profile_says_where_pictures_come_from(tmp_path: Path) -> None:
+def test_the_profile_names_the_source_of_a_camera(tmp_path: Path) -> None:
     text = load_robot().file.read_text(encoding="utf-8")
     mine = tmp_path / "mine.toml"
     mine.write_text(text.replace("# source = ", "source = "), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The sensors on a real terminal, before a camera that does what cameras do."""
+"""The sensors on a real terminal, with a camera that fails and recovers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def alive(pid: int) -> bool:
 
 
 @pytest.mark.slow
-def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
+def test_the_screen_shows_a_camera_failing_and_recovering(
     open_terminal: OpenTerminal,
 ) -> None:
     with CameraServer() as server:
@@ -51,7 +51,7 @@ def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
 
 
 @pytest.mark.slow
-def test_a_window_that_is_closed_leaves_no_camera(open_terminal: OpenTerminal) -> None:
+def test_closing_the_window_ends_the_camera(open_terminal: OpenTerminal) -> None:
     with CameraServer() as server:
         terminal = open_terminal("sensors", "--camera", f"camera={server.url}")
         terminal.until("working")

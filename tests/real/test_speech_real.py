@@ -1,4 +1,4 @@
-"""Speech through the real decoder: synthetic voices in, behaviours out, and a worker that dies."""
+"""Speech through the real decoder: synthetic voices, recognised behaviours, and a killed worker."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ OTHER = [
 
 
 class Studio:
-    """One worker that the tests share, and a loop to ask it in."""
+    """One worker that the tests share, and its event loop."""
 
     def __init__(self) -> None:
         self.told: list[str] = []
@@ -150,20 +150,20 @@ def studio(_studio: Studio) -> Studio:
 
 class TestVoices:
     @pytest.mark.slow
-    def test_known_phrases_are_sure(self, studio: Studio, voices: Voices) -> None:
+    def test_known_phrases_are_recognised_with_certainty(
+        self, studio: Studio, voices: Voices
+    ) -> None:
         found = {said: studio.hear(voices.say(said, voice)) for said, voice, _, _ in KNOWN}
         assert found == {said: ("sure", name, who) for said, _, name, who in KNOWN}
 
-    def test_other_wordings_are_asked_about_or_offered(
-        self, studio: Studio, voices: Voices
-    ) -> None:
+    def test_paraphrases_are_verified_or_offered(self, studio: Studio, voices: Voices) -> None:
         found = [(*studio.hear(voices.say(said, voice))[:2], name) for said, voice, name in UNKNOWN]
         taken = [(first, name) for tier, first, name in found if tier in ("sure", "unsure")]
         assert all(first == name for first, name in taken), found
         assert len(taken) >= len(UNKNOWN) - 1, found  # the bench says how many in the long run
 
     @pytest.mark.slow
-    def test_other_speech_is_nothing(self, studio: Studio, voices: Voices) -> None:
+    def test_other_speech_is_no_command(self, studio: Studio, voices: Voices) -> None:
         found = {said: studio.hear(voices.say(said, voice))[0] for said, voice in OTHER}
         assert found == dict.fromkeys(found, "nothing")
 
@@ -177,11 +177,11 @@ class TestVoices:
     ) -> None:
         assert studio.hear(voices.say(words, voice))[0] == "stop"
 
-    def test_noises_are_nothing(self, studio: Studio, voices: Voices) -> None:
+    def test_noises_are_no_command(self, studio: Studio, voices: Voices) -> None:
         found = {name: studio.hear(voices.noise(name))[0] for name in NOISES}
         assert found == dict.fromkeys(NOISES, "nothing")
 
-    def test_a_hiss_20_dB_below_the_voice_takes_nothing_away(
+    def test_noise_20_dB_below_the_voice_loses_no_command(
         self, studio: Studio, voices: Voices
     ) -> None:
         for said, voice, name, who in KNOWN[:4]:
@@ -192,10 +192,10 @@ class TestVoices:
         [b"", b"\0", bytes(640), bytes(4 * RATE), b"\x11\x99" * RATE, bytes(2 * RATE * LONGEST)],
         ids=["none", "half a sample", "20 ms", "silence", "a flat line", "the longest"],
     )
-    def test_odd_sounds_are_nothing(self, studio: Studio, pcm: bytes) -> None:
+    def test_odd_sounds_are_no_command(self, studio: Studio, pcm: bytes) -> None:
         assert studio.hear(pcm)[0] == "nothing"
 
-    def test_the_same_sound_is_heard_alike_every_time(self, studio: Studio, voices: Voices) -> None:
+    def test_decoding_is_deterministic(self, studio: Studio, voices: Voices) -> None:
         one, other = voices.say("tell a joke", "kal16"), voices.say("greet everyone")
         first = studio.decode(one)
         studio.decode(other)
@@ -209,7 +209,7 @@ class TestStream:
             sound.put_nowait(pcm[place : place + PIECE])
             await asyncio.sleep(0)
 
-    def test_words_come_before_the_end(self, studio: Studio, voices: Voices) -> None:
+    def test_partial_words_arrive_before_the_end(self, studio: Studio, voices: Voices) -> None:
         shown: list[str] = []
 
         async def talk() -> AcousticEvidence:
@@ -233,7 +233,7 @@ class TestStream:
         assert len(set(shown)) >= 3
 
     @pytest.mark.slow
-    def test_a_worker_that_is_killed_in_mid_utterance_loses_nothing(
+    def test_a_worker_killed_during_an_utterance_loses_nothing(
         self, studio: Studio, voices: Voices
     ) -> None:
         pcm = voices.say("call the next number", "rms")
@@ -267,7 +267,7 @@ class TestStream:
             *(("stop the robot", "slt"), ("emergency stop", "rms"), ("make it stop", "slt")),
         ],
     )
-    def test_stop_ends_the_utterance_by_itself(
+    def test_stop_ends_the_utterance(
         self, studio: Studio, voices: Voices, said: str, voice: str
     ) -> None:
         async def talk() -> AcousticEvidence:
@@ -282,7 +282,7 @@ class TestStream:
     @pytest.mark.parametrize(
         ("said", "soon"), [("stop the robot", 0.2), ("emergency stop", 0.2), ("make it stop", 0.5)]
     )
-    def test_hands_free_stop_is_known_before_the_utterance_is_known_to_be_over(
+    def test_a_hands_free_stop_is_detected_before_the_endpoint(
         self, voices: Voices, said: str, soon: float, voice: str
     ) -> None:
         pcm = voices.say(said, voice)
@@ -293,9 +293,7 @@ class TestStream:
         assert seconds - last <= soon
 
     @pytest.mark.slow
-    def test_hands_free_at_most_one_of_other_sentences_with_stop_stops_in_doubt(
-        self, voices: Voices
-    ) -> None:
+    def test_at_most_one_other_sentence_with_stop_stops_hands_free(self, voices: Voices) -> None:
         others = ("stop teasing her", "stop by the red table", "he stopped playing", "do not stop")
         taken = [
             (said, voice)
@@ -306,7 +304,7 @@ class TestStream:
         ]
         assert len(taken) <= 1, taken
 
-    def test_the_answer_comes_soon_after_the_end(
+    def test_the_result_arrives_soon_after_the_end(
         self, studio: Studio, voices: Voices, capsys: pytest.CaptureFixture[str]
     ) -> None:
         took: list[float] = []
@@ -334,7 +332,7 @@ class TestStream:
 
 class TestEars:
     @pytest.mark.slow
-    def test_a_stream_is_cut_into_utterances_and_each_is_understood(
+    def test_a_stream_is_split_into_understood_utterances(
         self, voices: Voices, tmp_path: Path
     ) -> None:
         gap = bytes(RATE)
@@ -375,7 +373,7 @@ class TestEars:
         assert StopCommand("stop") in heard
 
     @pytest.mark.slow
-    def test_files_are_listened_to(self, voices: Voices, tmp_path: Path) -> None:
+    def test_files_are_transcribed(self, voices: Voices, tmp_path: Path) -> None:
         both = tmp_path / "both.wav"
         both.write_bytes(
             wav(voices.say("tell a joke", "kal16") + bytes(2 * RATE) + voices.say("greet everyone"))
@@ -389,7 +387,7 @@ class TestEars:
         json.dumps(rows)
 
     @pytest.mark.slow
-    def test_the_papers_mode_understands_phrases_too(self, voices: Voices) -> None:
+    def test_the_paper_mode_understands_phrases(self, voices: Voices) -> None:
         settings = EvidenceSettings(mode="paper")
         files = [voices.file(said, voice) for said, voice, _, _ in KNOWN[:3]]
         rows = listen([*files, voices.file("stop")], BOOK, settings)
@@ -399,7 +397,7 @@ class TestEars:
 
 class TestWorker:
     @pytest.mark.slow
-    def test_what_cannot_be_pronounced_is_left_out_and_said(self, voices: Voices) -> None:
+    def test_unpronounceable_names_are_left_out_and_reported(self, voices: Voices) -> None:
         people = [Person("user1", "Xhqzr"), Person("user2", "Rosa")]
         book = Phrasebook(load_activity("bingo"), people)
         studio = Studio()
@@ -419,7 +417,7 @@ class TestWorker:
         finally:
             studio.close()
 
-    def test_a_missing_decoder_is_said(
+    def test_a_missing_decoder_is_reported(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         (tmp_path / "pocketsphinx.py").write_text("raise ImportError(name='pocketsphinx')")
@@ -433,7 +431,7 @@ class TestWorker:
             studio.close()
 
     @pytest.mark.slow
-    def test_garbage_is_answered_with_errors_and_the_end_of_input_ends_it(self) -> None:
+    def test_garbage_is_answered_with_errors_until_the_end_of_input(self) -> None:
         requests: list[object] = [
             b"hello\n",
             b"\xff\xfe\n",

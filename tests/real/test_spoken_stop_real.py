@@ -1,4 +1,4 @@
-"""Who says "stop the robot" in a live game stops its wheels, from the sound to the odometry."""
+"""A spoken "stop the robot" in a live game halts the wheels, from the sound to the odometry."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def wheels(family: Family, terminal: Terminal) -> Iterator[Wheels]:
 
 @pytest.mark.parametrize("voice", ["slt", "rms"])
 @pytest.mark.parametrize("words", ["stop the robot", "emergency stop"])
-def test_who_says_stop_the_robot_while_it_drives_stops_its_wheels_at_once(
+def test_a_spoken_stop_halts_the_driving_wheels_at_once(
     terminal: Terminal, microphone: Laptop, wheels: Wheels, tmp_path: Path, voice: str, words: str
 ) -> None:
     said = Voices(tmp_path).say(words, voice)
@@ -94,7 +94,7 @@ def test_who_says_stop_the_robot_while_it_drives_stops_its_wheels_at_once(
     assert wheels.speed < 1e-3
 
 
-def test_a_recording_is_heard_as_if_it_were_said_once_the_robot_is_on(
+def test_a_recording_plays_after_the_robot_is_open(
     folder: Path, family: Family, tmp_path: Path
 ) -> None:
     said = tmp_path / "said.wav"

@@ -75,7 +75,7 @@ def children(pid: int) -> list[int]:
 
 
 @pytest.mark.slow
-def test_a_recording_is_asked_about_and_becomes_a_step(
+def test_a_recorded_command_is_verified_and_becomes_a_step(
     open_terminal: OpenTerminal, voices: Voices, tangy: str, tmp_path: Path
 ) -> None:
     file = voices.file("greet everyone")
@@ -90,7 +90,7 @@ def test_a_recording_is_asked_about_and_becomes_a_step(
 
 
 @pytest.mark.slow
-def test_a_laptops_microphone_is_pushed_to_talk_and_becomes_a_step(
+def test_push_to_talk_over_a_laptop_microphone_gives_a_step(
     open_terminal: OpenTerminal,
     laptop: Callable[[], Laptop],
     voices: Voices,
@@ -124,7 +124,7 @@ def test_a_laptops_microphone_is_pushed_to_talk_and_becomes_a_step(
 
 
 @pytest.mark.slow
-def test_a_decoder_that_is_killed_in_mid_utterance_shows_and_loses_nothing(
+def test_a_decoder_killed_during_an_utterance_loses_nothing(
     open_terminal: OpenTerminal, laptop: Callable[[], Laptop], voices: Voices
 ) -> None:
     terminal = open_terminal("teach", "--seed", "1", "--mic", "socket", columns=100, lines=30)
@@ -147,7 +147,7 @@ def test_a_decoder_that_is_killed_in_mid_utterance_shows_and_loses_nothing(
     assert ended(other)
 
 
-def test_sound_on_standard_input_leaves_the_keys_to_the_terminal(
+def test_keys_work_while_sound_comes_from_standard_input(
     open_tmux: Callable[[int, int], Tmux], voices: Voices, tangy: str, tmp_path: Path
 ) -> None:
     tmux = open_tmux(80, 24)
@@ -170,7 +170,7 @@ def _confirmed(tmux: Tmux, text: str) -> bool:
 
 
 @pytest.mark.slow
-def test_no_is_heard_as_nothing_done_and_the_next_command_is_taken(
+def test_a_no_executes_nothing_and_takes_the_next_command(
     open_terminal: OpenTerminal, voices: Voices
 ) -> None:
     file = voices.file("call a number")
@@ -185,7 +185,7 @@ def test_no_is_heard_as_nothing_done_and_the_next_command_is_taken(
 
 
 @pytest.mark.slow
-def test_lines_hear_a_recording_and_a_script_answers(
+def test_a_script_of_answers_controls_a_recording_by_lines(
     voices: Voices, tangy: str, tmp_path: Path
 ) -> None:
     script, file = tmp_path / "answers", tmp_path / "two.wav"

@@ -1,4 +1,4 @@
-"""What the log promises when the process that writes it is killed, or is not the only one."""
+"""The guarantees of the log under kills and with several processes."""
 
 import random
 import subprocess
@@ -51,7 +51,7 @@ def start(script: str, folder: Path) -> subprocess.Popen[str]:
 
 
 @pytest.mark.slow
-def test_every_acknowledged_event_outlives_a_kill(tmp_path: Path) -> None:
+def test_every_acknowledged_event_survives_a_kill(tmp_path: Path) -> None:
     """Kill the writer again and again, at a random acknowledgement, while it goes on writing."""
     rng = random.Random()  # a new story each time; the law holds for all of them
     acknowledged = total = 0
@@ -74,7 +74,7 @@ def test_every_acknowledged_event_outlives_a_kill(tmp_path: Path) -> None:
     assert acknowledged > 0
 
 
-def test_a_second_process_is_refused_until_the_first_one_ends(tmp_path: Path) -> None:
+def test_a_second_writer_is_refused_until_the_first_ends(tmp_path: Path) -> None:
     with start(HOLDER, tmp_path) as child:
         assert child.stdout is not None and child.stdin is not None
         assert child.stdout.readline() == "open\n"
@@ -89,7 +89,7 @@ def test_a_second_process_is_refused_until_the_first_one_ends(tmp_path: Path) ->
         assert append_body(store, "mine", {}) == 2
 
 
-def test_a_killed_process_holds_nothing(tmp_path: Path) -> None:
+def test_a_killed_process_leaves_no_lock(tmp_path: Path) -> None:
     with start(HOLDER, tmp_path) as child:
         assert child.stdout is not None and child.stdout.readline() == "open\n"
         child.kill()

@@ -1,4 +1,4 @@
-"""Teaching in a real terminal: typed, asked about, confirmed, kept, and taken up again."""
+"""Teaching in a real terminal: typed, verified, stored, and resumed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize(
     ("columns", "lines"), [(80, 24), pytest.param(160, 45, marks=pytest.mark.slow)]
 )
-def test_a_step_is_typed_asked_about_confirmed_and_still_there_next_time(
+def test_a_typed_step_is_verified_stored_and_shown_after_a_restart(
     open_tmux: Callable[[int, int], Tmux], tangy: str, tmp_path: Path, columns: int, lines: int
 ) -> None:
     tmux = open_tmux(columns, lines)
@@ -65,7 +65,7 @@ def test_a_y_typed_ahead_does_not_answer(open_terminal: OpenTerminal) -> None:
 
 
 @pytest.mark.slow
-def test_no_puts_the_words_back(open_terminal: OpenTerminal) -> None:
+def test_a_no_returns_the_words_to_the_line(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1")
     terminal.until("type a command")
     terminal.type("call number\r")
@@ -81,7 +81,7 @@ def test_no_puts_the_words_back(open_terminal: OpenTerminal) -> None:
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["term", "hup"]
 )
-def test_a_signal_ends_the_program_in_good_order(
+def test_a_signal_ends_the_program_cleanly(
     open_terminal: OpenTerminal, number: signal.Signals, status: int
 ) -> None:
     terminal = open_terminal("teach", "--seed", "1")
@@ -109,7 +109,7 @@ def test_a_closed_window_ends_the_program_and_loses_nothing(
 
 
 @pytest.mark.slow
-def test_a_second_program_on_the_same_folder_is_told_who_has_it(
+def test_a_second_program_on_the_same_folder_names_the_first(
     open_terminal: OpenTerminal,
 ) -> None:
     first = open_terminal("teach", "--seed", "1")
@@ -124,7 +124,7 @@ def test_a_second_program_on_the_same_folder_is_told_who_has_it(
 
 
 @pytest.mark.slow
-def test_a_window_that_is_too_small_says_so_and_loses_nothing(
+def test_a_small_window_shows_a_message_and_loses_nothing(
     open_terminal: OpenTerminal,
 ) -> None:
     terminal = open_terminal("teach", "--seed", "1", columns=40, lines=10)
@@ -162,7 +162,7 @@ def test_a_terminal_without_utf8_gets_ascii(open_terminal: OpenTerminal) -> None
 
 
 @pytest.mark.slow
-def test_nothing_is_written_while_nothing_happens(open_terminal: OpenTerminal) -> None:
+def test_an_idle_program_writes_nothing(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1", columns=120, lines=40)
     terminal.until("type a command")
     terminal.settle(1.0)

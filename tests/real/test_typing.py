@@ -1,4 +1,4 @@
-"""Somebody types into the real program, and it takes as long as it takes."""
+"""The bench of typing drives the real program."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_tui.experiments.terminal import Terminal
 
 
 @pytest.mark.slow
-def test_some_steps_are_typed_asked_about_and_kept() -> None:
+def test_typed_steps_are_verified_and_stored() -> None:
     begun = monotonic()
     done = typing.run("bingo", [3], Where(), steps=4)
     seconds = monotonic() - begun
@@ -30,7 +30,7 @@ def test_some_steps_are_typed_asked_about_and_kept() -> None:
 
 
 @pytest.mark.slow
-def test_a_program_that_never_asks_is_not_waited_for_for_ever(
+def test_waiting_for_a_missing_question_times_out(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     with Terminal(["--version"]) as shown:

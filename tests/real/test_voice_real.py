@@ -133,14 +133,14 @@ def test_a_call_has_pauses_around_it_and_is_slow(synthesiser: Synthesiser, rate:
     assert ratio > (1.1 if rate == 100 else 1.2), "espeak-ng goes no slower than 80 words"
 
 
-def test_what_comes_after_a_call_is_not_slow(synthesiser: Synthesiser) -> None:
+def test_speech_after_a_call_has_normal_speed(synthesiser: Synthesiser) -> None:
     after = "and everybody marks it on the card"
     with_call = parts(synthesiser.render(marked_up(as_called(f"B 5 {after}", DECK))))[0][-1]
     alone = parts(synthesiser.render(f"<speak>{after}</speak>"))[0][-1]
     assert with_call == pytest.approx(alone, rel=0.1)
 
 
-def test_the_second_time_is_digit_by_digit() -> None:
+def test_the_repetition_of_a_call_is_digit_by_digit() -> None:
     assert phonemes("O 69").split() == ["oU", "sIksti", "naIn", "oU", "sIks", "naIn"]
     fifteen, fifty = phonemes("B 15").split(), phonemes("G 50").split()
     assert fifteen == ["bi", "fIftin", "bi", "wVn", "faIv"]
@@ -152,7 +152,7 @@ def test_the_second_time_is_digit_by_digit() -> None:
     "text",
     ["<b>", "a & b", '"it\'s"', "-v de", "--help", "Zoë 你好", "[[x]]", "</speak>", "%s;$(id)"],
 )
-def test_any_text_is_spoken_and_none_is_a_command(synthesiser: Synthesiser, text: str) -> None:
+def test_any_text_is_spoken_as_text(synthesiser: Synthesiser, text: str) -> None:
     path = synthesiser.render(marked_up(as_called(text, DECK)))
     assert 0.2 < wav_seconds(path) < 6.0
     assert samples(path).std() > 100
@@ -174,14 +174,16 @@ def test_rate_and_voice_are_heard(synthesiser: Synthesiser) -> None:
             synthesiser.render(text, VoicePreference(None, voice))
 
 
-def test_doctor_hears_it_speak() -> None:
+def test_doctor_tests_the_voice() -> None:
     named, problem = examine_voice()
     assert re.fullmatch(r"espeak-ng \d[\w.-]*", named)
     assert problem == ""
 
 
 @needs_aplay
-async def test_what_is_played_is_what_was_made(synthesiser: Synthesiser, card: int) -> None:
+async def test_the_played_sound_equals_the_rendered_one(
+    synthesiser: Synthesiser, card: int
+) -> None:
     voice = SpeechVoice(synthesiser, open_player("aplay"), deck=DECK)
     line = voice.say("B 5")
     heard = await hear(card, 10_000_000)
@@ -194,7 +196,7 @@ async def test_what_is_played_is_what_was_made(synthesiser: Synthesiser, card: i
 
 
 @needs_aplay
-async def test_hush_cuts_it_in_the_middle_of_a_word(synthesiser: Synthesiser, card: int) -> None:
+async def test_hush_cuts_a_line_within_a_word(synthesiser: Synthesiser, card: int) -> None:
     gate: list[str] = []
     voice = SpeechVoice(
         synthesiser,
@@ -217,9 +219,7 @@ async def test_hush_cuts_it_in_the_middle_of_a_word(synthesiser: Synthesiser, ca
 
 
 @needs_aplay
-async def test_a_player_that_is_killed_opens_the_microphone(
-    synthesiser: Synthesiser, card: int
-) -> None:
+async def test_a_killed_player_opens_the_microphone(synthesiser: Synthesiser, card: int) -> None:
     told: list[str] = []
     ended = asyncio.Event()
     voice = SpeechVoice(synthesiser, open_player("aplay"), on_end=ended.set, tell=told.append)
@@ -251,7 +251,7 @@ def _words(command_line: Path) -> list[str]:
 
 @needs_aplay
 @pytest.mark.usefixtures("no_card")
-async def test_without_a_sound_card_aplay_says_so(synthesiser: Synthesiser) -> None:
+async def test_a_missing_sound_card_is_reported_by_aplay(synthesiser: Synthesiser) -> None:
     with pytest.raises(PlayerError, match="No sound comes out of aplay: "):
         await open_player("aplay").play(synthesiser.render("<speak>hello</speak>"))
     player, problem = examine_output(
@@ -262,9 +262,7 @@ async def test_without_a_sound_card_aplay_says_so(synthesiser: Synthesiser) -> N
 
 @pytest.mark.slow
 @needs_aplay
-def test_the_program_speaks_and_writes_nothing_but_the_text(
-    card: int, tmp_path: Path, tangy: str
-) -> None:
+def test_the_program_speaks_and_prints_only_the_text(card: int, tmp_path: Path, tangy: str) -> None:
     ours = subprocess.Popen(  # noqa: S603 - our own program
         [TANGY, "say", "B 5", "--sink", "aplay"],
         env={**os.environ, "XDG_CACHE_HOME": str(tmp_path / "home")},
@@ -279,7 +277,7 @@ def test_the_program_speaks_and_writes_nothing_but_the_text(
 
 @pytest.mark.slow
 @needs_aplay
-def test_control_c_cuts_it_and_leaves_the_terminal_clean(
+def test_ctrl_c_cuts_the_speech_and_leaves_the_terminal_clean(
     card: int, tmp_path: Path, open_terminal: OpenTerminal
 ) -> None:
     terminal = open_terminal(

@@ -1,4 +1,4 @@
-"""A STOP from a console that looks on stops the wheels of the robot."""
+"""A STOP from a watching console stops the wheels of the robot."""
 
 from __future__ import annotations
 
