@@ -1,4 +1,4 @@
-"""An activity's file of version 0.6.0 gets the keys of today, and its games stay the same."""
+"""Converting an activity's file of version 0.6.0 adds the new keys and keeps its games."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def as_before(activity: Activity) -> Activity:
 
 
 @pytest.mark.parametrize("more", ["", "asks_in_visit = 8\n", "asks_in_game = 9\n"])
-def test_a_converted_file_is_the_same_activity_and_names_its_defaults(
+def test_a_converted_file_gives_the_same_activity_with_explicit_defaults(
     more: str, tmp_path: Path
 ) -> None:
     file = put(tmp_path, more + TEXT)
@@ -68,7 +68,7 @@ def test_a_file_saved_with_a_byte_order_mark_is_the_same_activity(tmp_path: Path
 
 
 @pytest.mark.parametrize("ending", ["", "\n"])
-def test_what_the_file_leaves_out_stays_what_it_was(ending: str, tmp_path: Path) -> None:
+def test_omitted_keys_keep_their_meaning(ending: str, tmp_path: Path) -> None:
     shipped = Path(shipped_activities()["bingo"]).read_text(encoding="utf-8")
     new = ("pressing_strategies", "asks_in_visit", "asks_in_game")
     text = "\n".join(line for line in shipped.split("\n") if not line.startswith(new))
@@ -82,13 +82,13 @@ def test_what_the_file_leaves_out_stays_what_it_was(ending: str, tmp_path: Path)
     assert before.pressing and as_before(after) == as_before(before)
 
 
-def test_every_key_that_it_can_write_or_name_has_words(tmp_path: Path) -> None:
+def test_every_convertible_key_has_a_comment(tmp_path: Path) -> None:
     assert set(converted(put(tmp_path, TEXT), COMMENTS).added) == set(COMMENTS)
     assert tuple(CAN_ADD) == OPTIONAL
 
 
 @pytest.mark.parametrize("name", shipped_activities())
-def test_what_ships_is_up_to_date(name: str) -> None:
+def test_shipped_activities_need_no_conversion(name: str) -> None:
     found = converted(shipped_activities()[name], COMMENTS)
     assert (found.added, found.lacks) == ((), ())
 
@@ -101,9 +101,7 @@ def test_a_mistake_is_refused_with_its_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow  # five programs
-def test_the_verb_writes_beside_the_old_file_and_never_over_one(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_the_verb_writes_a_new_file_and_overwrites_none(tangy: Tangy, tmp_path: Path) -> None:
     file = put(tmp_path, TEXT)
     done = tangy("activity", "convert", file)
     assert (done.returncode, done.stderr) == (0, "")

@@ -1,4 +1,4 @@
-"""The activity that was chosen is the one of every workspace of the folder that names none."""
+"""The chosen activity of a data folder is the default of its workspaces."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tangy_tui.app.workspace import Workspace
 from tests.support.declared import declared
 
 
-def test_the_choice_is_kept(tmp_path: Path) -> None:
+def test_the_chosen_activity_is_stored(tmp_path: Path) -> None:
     first = Workspace(tmp_path)
     usual = first.activity.name
     first.change_activity("trivia")
@@ -26,7 +26,7 @@ def test_the_choice_is_kept(tmp_path: Path) -> None:
     named.close()
 
 
-def test_teams_take_the_place_of_people_and_people_that_of_teams(tmp_path: Path) -> None:
+def test_a_change_of_activity_switches_between_people_and_teams(tmp_path: Path) -> None:
     workspace = Workspace(tmp_path, users=3)
     people = [person.id for person in workspace.people]
     workspace.change_activity("team-trivia")
@@ -36,7 +36,7 @@ def test_teams_take_the_place_of_people_and_people_that_of_teams(tmp_path: Path)
     workspace.close()
 
 
-def test_a_file_of_ones_own_is_found_from_everywhere(
+def test_a_chosen_file_is_found_from_any_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = tmp_path / "own.toml"
@@ -46,7 +46,7 @@ def test_a_file_of_ones_own_is_found_from_everywhere(
     assert chosen_activity(tmp_path) == str(own)
 
 
-def test_what_there_is_none_of_is_not_kept(tmp_path: Path) -> None:
+def test_an_unknown_activity_is_not_stored(tmp_path: Path) -> None:
     with pytest.raises(TangyError):
         choose_activity(tmp_path, "chess boxing")
     assert not (tmp_path / FILE).exists()

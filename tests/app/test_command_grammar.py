@@ -1,4 +1,4 @@
-"""What staff type in a game: every command has words, and words mean one command."""
+"""Typed commands of staff in a game: every command has words, and words mean one command."""
 
 from __future__ import annotations
 
@@ -91,12 +91,12 @@ def read(text: str) -> GameCommand | None:
         ("", None),
     ],
 )
-def test_words_are_the_command_that_they_mean(text: str, command: GameCommand | None) -> None:
+def test_words_are_read_as_their_command(text: str, command: GameCommand | None) -> None:
     assert read(text) == command
 
 
 @pytest.mark.parametrize("words", sorted(FIXED))
-def test_what_is_a_command_as_it_stands_is_read_as_that(words: str) -> None:
+def test_fixed_commands_are_read_in_any_case(words: str) -> None:
     assert read(words.upper()) == FIXED[words]
 
 
@@ -123,7 +123,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
         ("left Nobody", "There is nobody called 'Nobody'."),
     ],
 )
-def test_what_is_nearly_a_command_is_refused_in_a_sentence(text: str, said: str) -> None:
+def test_an_incomplete_command_is_refused_in_one_sentence(text: str, said: str) -> None:
     with pytest.raises(TangyError, match=said.replace(".", r"\.")):
         read(text)
 
@@ -134,7 +134,7 @@ def test_the_nearest_command_is_named() -> None:
 
 
 @given(st.text(max_size=60))
-def test_any_text_is_a_command_none_or_refused(text: str) -> None:
+def test_any_text_is_read_ignored_or_refused(text: str) -> None:
     try:
         read(text)
     except TangyError as error:
@@ -152,9 +152,7 @@ def test_any_text_is_a_command_none_or_refused(text: str) -> None:
         ("next number", None), ("tell a joke", None), ("go to rosa", None),
     ],
 )  # fmt: skip
-def test_while_teaching_words_are_read_alike_on_screens_and_by_lines(
-    typed: str, word: object
-) -> None:
+def test_teaching_words_mean_the_same_on_screens_and_by_lines(typed: str, word: object) -> None:
     assert read_teaching(typed, {"bingo"}) == word
 
 
@@ -166,7 +164,7 @@ def test_an_answer_is_yes_no_or_a_number() -> None:
 
 
 @pytest.mark.parametrize("activity", ["bingo", str(LANTERNS)])
-def test_no_phrase_of_an_activity_is_taken_for_another_command(activity: str) -> None:
+def test_no_phrase_of_an_activity_is_read_as_another_command(activity: str) -> None:
     profile = load_activity(activity)
     phrases = [phrase for one in profile.behaviours.values() for phrase in one.phrases]
     title = profile.title.casefold().split()

@@ -1,4 +1,4 @@
-"""A step that differs from what was shown before is told at once, and only once."""
+"""A step that contradicts an earlier demonstration is reported at once, and only once."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def session(workspace: Workspace, teacher: str, seed: int = 1) -> TeachingSessio
     return teaching
 
 
-def test_what_another_teacher_did_in_the_same_situation_is_told(workspace: Workspace) -> None:
+def test_a_contradiction_to_another_teacher_is_reported(workspace: Workspace) -> None:
     do(session(workspace, "Ada"), "greet everyone", "call number")
     bea = session(workspace, "Bea")
     (told,) = do(bea, "tell a joke")
@@ -40,7 +40,7 @@ def test_what_another_teacher_did_in_the_same_situation_is_told(workspace: Works
     assert "Ada showed: greet everyone (step 1 of another game)" in teaching_lines(told, bea)[0]
 
 
-def test_what_one_did_oneself_is_told(workspace: Workspace) -> None:
+def test_a_contradiction_to_an_own_step_is_reported(workspace: Workspace) -> None:
     teaching = session(workspace, "Ada")
     (told,) = do(teaching, "greet everyone", "call number", "tell a joke")
     assert told.own
@@ -48,7 +48,7 @@ def test_what_one_did_oneself_is_told(workspace: Workspace) -> None:
     assert "you showed: call number (step 2)" in teaching_lines(told, teaching)[0]
 
 
-def test_it_is_told_once_and_again_only_after_an_undo(workspace: Workspace) -> None:
+def test_a_contradiction_is_reported_once_until_an_undo(workspace: Workspace) -> None:
     teaching = session(workspace, "Ada")
     do(teaching, "greet everyone", "call number")
     assert len(do(teaching, "tell a joke")) == 1
@@ -65,7 +65,7 @@ def test_the_same_answer_contradicts_nothing(workspace: Workspace) -> None:
     assert do(session(workspace, "Bea"), "greet everyone", "call number", "call number") == []
 
 
-def test_a_step_that_was_undone_contradicts_nothing(workspace: Workspace) -> None:
+def test_an_undone_step_contradicts_nothing(workspace: Workspace) -> None:
     ada = session(workspace, "Ada")
     do(ada, "tell a joke")
     ada.apply(Undo())
@@ -74,7 +74,7 @@ def test_a_step_that_was_undone_contradicts_nothing(workspace: Workspace) -> Non
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_careful_teacher_is_told_nothing(workspace: Workspace, seed: int) -> None:
+def test_a_consistent_teacher_gets_no_report(workspace: Workspace, seed: int) -> None:
     teaching = session(workspace, "Ada", seed)
     told = list(ScriptedTeacher(teaching).demonstrate())
     assert teaching.demonstration.finished

@@ -1,4 +1,4 @@
-"""People and teams leave and come back in games by facts, as staff say."""
+"""People and teams leave and return in games by facts at the command of staff."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
     made.store.close()
 
 
-def test_a_person_leaves_and_comes_back_and_the_log_has_it(room: Room) -> None:
+def test_leaving_and_returning_are_logged(room: Room) -> None:
     assert room.do(GoesAway("user1")) == "goes"
     assert room.do(GoesAway("user1")) == "away before"
     assert room.world.game.here == ("user2", "user3")
@@ -59,7 +59,7 @@ def test_a_person_leaves_and_comes_back_and_the_log_has_it(room: Room) -> None:
     assert logged == [("left", "user1"), ("came", "user1")]
 
 
-def test_the_last_one_and_strangers_are_told_of(room: Room) -> None:
+def test_the_last_player_and_strangers_cannot_leave(room: Room) -> None:
     assert room.do(GoesAway("user9")) == "not playing"
     assert [room.do(GoesAway(one)) for one in ("user1", "user2", "user3")] == [
         "goes", "goes", "last one"
@@ -67,7 +67,7 @@ def test_the_last_one_and_strangers_are_told_of(room: Room) -> None:
     assert room.do(SetPace(20)) == "no cards"
 
 
-def test_the_next_game_begins_without_who_is_away(room: Room) -> None:
+def test_the_next_game_begins_without_absent_people(room: Room) -> None:
     room.do(GoesAway("user1"))
     room.running.over = True
     assert room.do(GoesAway("user2")) == "goes"
@@ -78,7 +78,7 @@ def test_the_next_game_begins_without_who_is_away(room: Room) -> None:
     assert list(room.world.game.here) == ["user1", "user3"]
 
 
-def test_a_team_leaves_as_a_person_does(tmp_path: Path) -> None:
+def test_a_team_can_leave_like_a_person(tmp_path: Path) -> None:
     room = Room(tmp_path, "team-trivia", declared("team-trivia").teams)
     assert room.do(GoesAway("Reds")) == "goes"
     assert room.world.game.here == ("Blues",)

@@ -1,4 +1,4 @@
-"""A game by facts that was killed goes on with the facts that it had, live and simulated."""
+"""A killed game by facts resumes with its facts, live and simulated."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def states(steps: list[GameStep]) -> list[tuple[str, str | None, ActivityState |
 
 @pytest.mark.parametrize("name", DECLARED)
 @pytest.mark.parametrize("killed_at", [1, 3, 8, 21])
-def test_a_live_game_goes_on_as_the_one_that_nobody_killed(name: str, killed_at: int) -> None:
+def test_a_resumed_live_game_equals_an_uninterrupted_one(name: str, killed_at: int) -> None:
     whole = live(name)
     whole.begin()
     before = play(whole, killed_at)
@@ -93,7 +93,7 @@ def test_a_live_game_goes_on_as_the_one_that_nobody_killed(name: str, killed_at:
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_a_simulated_game_goes_on_as_the_one_that_nobody_killed(name: str) -> None:
+def test_a_resumed_simulated_game_equals_an_uninterrupted_one(name: str) -> None:
     whole = DeclaredWorld(declared(name), PEOPLE, seed=SEED)
     before = play(whole, 9)
     resumed = DeclaredWorld(declared(name), PEOPLE, seed=SEED)
@@ -102,7 +102,7 @@ def test_a_simulated_game_goes_on_as_the_one_that_nobody_killed(name: str) -> No
 
 
 @pytest.mark.parametrize("of", ["live", "simulated"])
-def test_who_has_left_is_still_away(of: str) -> None:
+def test_absent_people_stay_absent_after_a_resume(of: str) -> None:
     name, live_world = "trivia", of == "live"
 
     def made() -> DeclaredWorld | DeclaredLiveWorld:
@@ -122,7 +122,7 @@ def test_who_has_left_is_still_away(of: str) -> None:
     assert states(play(resumed, 9, since=7)) == states(play(whole, 9, since=7))
 
 
-def test_who_asked_before_it_was_killed_is_not_forgotten_although_no_sign_is_up() -> None:
+def test_a_request_survives_a_kill_without_a_sign() -> None:
     world = live("trivia")
     world.begin()
     *_, step = play(world, 2)
@@ -135,7 +135,7 @@ def test_who_asked_before_it_was_killed_is_not_forgotten_although_no_sign_is_up(
     assert [u.id for u in resumed.observe().users if u.request == "AR"] == ["user3"]
 
 
-def test_a_log_without_facts_or_of_another_activity_is_not_gone_on_with() -> None:
+def test_a_log_without_facts_or_of_another_activity_is_not_resumed() -> None:
     world = live("trivia")
     world.begin()
     (step,) = play(world, 1)

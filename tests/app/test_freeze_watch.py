@@ -1,4 +1,4 @@
-"""A program that stood still says so; one that waits for a busy machine does not."""
+"""A frozen program reports its freeze; a busy machine is no freeze."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Clocks:
         return self.watch.tick()
 
 
-def test_it_is_said_once_and_for_how_long() -> None:
+def test_a_freeze_is_reported_once_with_its_duration() -> None:
     clocks = Clocks()
     assert clocks.pass_(1.0, 0.1) == 0.0
     assert clocks.pass_(42.0, 0.1) == 42.0
@@ -40,7 +40,7 @@ def test_it_is_said_once_and_for_how_long() -> None:
     ("seconds", "worked"),
     [(FROZEN_SECONDS - 0.1, 0.0), (2 * FROZEN_SECONDS, WORKED_SECONDS), (60.0, 30.0)],
 )
-def test_a_short_gap_and_hard_work_are_none(seconds: float, worked: float) -> None:
+def test_short_gaps_and_busy_times_are_no_freeze(seconds: float, worked: float) -> None:
     assert Clocks().pass_(seconds, worked) == 0.0
 
 
@@ -51,7 +51,7 @@ def data_folder(taught: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_the_game_is_paused_and_the_log_says_why(workspace: Workspace, learnt: Policy) -> None:
+def test_a_freeze_pauses_the_game_and_is_logged(workspace: Workspace, learnt: Policy) -> None:
     clocks, told = Clocks(), list[float]()
     control = scripted_controller(workspace.supervision(learnt, 5))
     guard = FreezeGuard(control, told.append, clocks.watch)

@@ -1,4 +1,4 @@
-"""The controller of games: whatever staff do leads here, and is in the log with who did it."""
+"""The game controller: every action of staff, logged with its author."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ from tests.hw.links import FakeLink
 
 
 class Played:
-    """A game that staff control: with a robot (a fake link), or a simulated one."""
+    """A game controlled by staff, live (over a fake link) or simulated."""
 
     def __init__(self, workspace: Workspace, *, robot: bool, inject: tuple[str, ...] = ()) -> None:
         learnt, _ = load_policy(workspace.store, workspace.activity)
@@ -98,7 +98,7 @@ def simulated(taught: Path) -> Any:
     workspace.close()
 
 
-def test_a_game_goes_on_pauses_steps_and_goes_on(live: Played) -> None:
+def test_a_game_pauses_steps_and_resumes(live: Played) -> None:
     control = live.control
     assert live.next() == ["greeting"] and live.phase == "running"
     assert kinds(control.apply(Pause())) == ["paused"]
@@ -109,7 +109,7 @@ def test_a_game_goes_on_pauses_steps_and_goes_on(live: Played) -> None:
     assert live.next() == ["call number"]
 
 
-def test_stop_reaches_the_robot_at_once_in_the_middle_of_a_behaviour(live: Played) -> None:
+def test_a_stop_reaches_the_robot_during_a_behaviour(live: Played) -> None:
     doing, goes_on = threading.Event(), threading.Event()
 
     def meanwhile(do: str, time: float) -> None:
@@ -133,7 +133,7 @@ def test_stop_reaches_the_robot_at_once_in_the_middle_of_a_behaviour(live: Playe
     assert ("let go on", "Ada") in live.logged()
 
 
-def test_what_a_stop_breaks_off_is_no_fault_and_nobodys_refusal(live: Played) -> None:
+def test_a_behaviour_interrupted_by_a_stop_is_no_fault_and_no_refusal(live: Played) -> None:
     for _ in range(3):
         live.next()
     live.link.sign(2)
@@ -150,7 +150,7 @@ def test_what_a_stop_breaks_off_is_no_fault_and_nobodys_refusal(live: Played) ->
     assert not any(isinstance(one, Diagnosed) for one in told)
 
 
-def test_where_staff_send_tangy_elsewhere_that_is_nobodys_fault(live: Played) -> None:
+def test_a_drive_redirected_by_staff_is_no_refusal(live: Played) -> None:
     control = live.control
     while live.world is None or live.world.tracker.place != "user2":
         live.link.sign(2)
@@ -164,7 +164,7 @@ def test_where_staff_send_tangy_elsewhere_that_is_nobodys_fault(live: Played) ->
     assert "Acted" in told and "Diagnosed" not in told and not control.supervision.faults
 
 
-def test_staff_take_over_say_what_is_done_and_give_back(live: Played) -> None:
+def test_staff_take_over_choose_a_behaviour_and_give_back(live: Played) -> None:
     control = live.control
     live.next()
     assert kinds(control.apply(TakeOver())) == ["takes over"] and live.phase == "staff"
@@ -182,7 +182,7 @@ def test_staff_take_over_say_what_is_done_and_give_back(live: Played) -> None:
     assert live.next() == ["call number"]
 
 
-def test_where_staff_are_asked_first_nothing_else_is_done(live: Played) -> None:
+def test_the_game_waits_for_the_confirmation_of_staff(live: Played) -> None:
     control = live.control
     control.apply(SetAutonomy("each"))
     assert live.next() == [] and control.proposal is not None
@@ -197,7 +197,7 @@ def test_where_staff_are_asked_first_nothing_else_is_done(live: Played) -> None:
     assert live.next() == ["call number"]
 
 
-def test_the_last_call_is_said_again_and_taken_back(live: Played) -> None:
+def test_the_last_call_is_repeated_and_taken_back(live: Played) -> None:
     control = live.control
     assert kinds(control.apply(TakeBackCall())) == ["nothing called"]
     live.next(), live.next()
@@ -211,7 +211,7 @@ def test_the_last_call_is_said_again_and_taken_back(live: Played) -> None:
     assert ("took back", "Ada") in live.logged()
 
 
-def test_somebody_is_asked_for_and_a_response_does_not_count(live: Played) -> None:
+def test_staff_can_request_a_visit_and_void_a_response(live: Played) -> None:
     live.next()
     assert live.control.apply(AskFor("user2")) == [StaffNote("asked for", "user2")]
     assert live.next() == ["navigate to user"]
@@ -219,7 +219,7 @@ def test_somebody_is_asked_for_and_a_response_does_not_count(live: Played) -> No
     assert live.voided == ["user2"]
 
 
-def test_staff_drive_by_hand_and_a_stop_ends_that(live: Played) -> None:
+def test_a_stop_ends_driving_by_hand(live: Played) -> None:
     assert kinds(live.control.apply(Drive("left", 0.05))) == ["driven"]
     assert live.link.told.count("drive") >= 2
     driving = threading.Thread(target=live.control.apply, args=(Drive("forward", 5.0),))
@@ -233,7 +233,7 @@ def test_staff_drive_by_hand_and_a_stop_ends_that(live: Played) -> None:
     assert kinds(live.control.apply(Drive("left"))) == ["stopped first"]
 
 
-def test_a_game_is_ended_and_then_there_is_none(live: Played) -> None:
+def test_an_ended_game_accepts_no_commands(live: Played) -> None:
     live.next()
     told = live.control.apply(EndGame())
     assert kinds(told) == ["ended", "GameEnded"] and live.phase == "idle"
@@ -242,7 +242,7 @@ def test_a_game_is_ended_and_then_there_is_none(live: Played) -> None:
     assert live.control.begin() and live.link.told[-1] == "release"
 
 
-def test_a_game_that_is_abandoned_is_left_in_the_log_and_the_robot_stands(live: Played) -> None:
+def test_abandoning_a_game_logs_its_end_and_stops_the_robot(live: Played) -> None:
     live.next()
     live.control.abandon()
     assert live.link.told[-1] == "stop: staff ended the game"
@@ -250,7 +250,7 @@ def test_a_game_that_is_abandoned_is_left_in_the_log_and_the_robot_stands(live: 
     assert ended.body["stopped"] == "It was left before its end."
 
 
-def test_a_fault_halts_until_it_was_seen_and_cleared(simulated: Played) -> None:
+def test_a_fault_halts_the_game_until_it_is_acknowledged_and_cleared(simulated: Played) -> None:
     control = simulated.control
     while simulated.phase != "halted":
         assert not any(isinstance(event, GameEnded) for event in control.next())

@@ -1,4 +1,4 @@
-"""A game that was interrupted goes on where it was: deck, calls, requests, stage, beliefs."""
+"""Resuming an interrupted game with its deck, calls, requests, stage and posteriors."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ SEED = 31
 
 
 class Interrupted:
-    """A data folder in which games are played, and interrupted by leaving them as they are."""
+    """A data folder in which games are played and interrupted."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -103,7 +103,7 @@ def room(taught: Path) -> Iterator[Interrupted]:
 
 
 @pytest.mark.parametrize("steps", [1, 2, 7, 20, 33])
-def test_it_stands_where_it_stood_and_waits_for_staff(room: Interrupted, steps: int) -> None:
+def test_a_resumed_game_has_its_old_state_and_is_paused(room: Interrupted, steps: int) -> None:
     room.play(steps)
     stood = room.standing
     room.interrupt()
@@ -114,7 +114,7 @@ def test_it_stands_where_it_stood_and_waits_for_staff(room: Interrupted, steps: 
     assert str(control.phase) == "running"
 
 
-def test_the_numbers_come_as_they_would_have_come(room: Interrupted) -> None:
+def test_a_resumed_game_keeps_the_order_of_its_numbers(room: Interrupted) -> None:
     room.play(0)
     control = scripted_controller(room.supervision)
     while not room.supervision.over:
@@ -131,7 +131,7 @@ def test_the_numbers_come_as_they_would_have_come(room: Interrupted) -> None:
     assert called[:shorter] == whole[:shorter] and shorter > 12
 
 
-def test_the_second_game_of_a_run_goes_on_as_well(room: Interrupted) -> None:
+def test_the_second_game_of_a_run_can_be_resumed(room: Interrupted) -> None:
     room.play(9, whole=1)
     stood = room.standing
     room.interrupt()
@@ -140,7 +140,7 @@ def test_the_second_game_of_a_run_goes_on_as_well(room: Interrupted) -> None:
     assert room.standing == stood and room.supervision.games == 2
 
 
-def test_a_game_goes_on_again_and_again_and_its_log_is_one_game(room: Interrupted) -> None:
+def test_a_game_resumed_several_times_is_one_game_in_the_log(room: Interrupted) -> None:
     room.play(5)
     room.interrupt()
     control = room.resume()
@@ -159,7 +159,7 @@ def test_a_game_goes_on_again_and_again_and_its_log_is_one_game(room: Interrupte
     assert find_interrupted(room.workspace, SIMULATED) is None
 
 
-def test_an_ended_game_is_not_offered_any_more(room: Interrupted) -> None:
+def test_an_ended_game_is_not_offered(room: Interrupted) -> None:
     room.play(4)
     room.interrupt()
     end_interrupted(room.workspace, room.past(), "over")
@@ -179,7 +179,7 @@ def test_no_game_without_a_step_or_of_another_world_is_offered(
     assert interrupted_game(room.workspace.store, "another") is None
 
 
-def test_with_other_people_it_does_not_go_on(room: Interrupted) -> None:
+def test_a_game_is_not_resumed_with_other_people(room: Interrupted) -> None:
     room.play(4)
     room.interrupt()
     room.workspace.close()
@@ -189,7 +189,7 @@ def test_with_other_people_it_does_not_go_on(room: Interrupted) -> None:
         room.resume()
 
 
-def test_where_the_log_leads_elsewhere_the_game_does_not_go_on(room: Interrupted) -> None:
+def test_a_game_with_an_inconsistent_log_is_not_resumed(room: Interrupted) -> None:
     room.play(8)
     room.interrupt()
     past = room.past()
@@ -226,7 +226,7 @@ class Robot:
             self.control.next()
 
 
-def test_a_live_game_goes_on_with_the_order_of_its_numbers(taught: Path) -> None:
+def test_a_resumed_live_game_keeps_the_order_of_its_numbers(taught: Path) -> None:
     workspace = Workspace(taught)
     before = Robot(workspace)
     before.next(6)
@@ -244,7 +244,7 @@ def test_a_live_game_goes_on_with_the_order_of_its_numbers(taught: Path) -> None
     workspace.close()
 
 
-def test_who_came_meanwhile_joins_a_game_that_goes_on_and_nothing_is_lost(taught: Path) -> None:
+def test_a_new_person_joins_a_resumed_live_game(taught: Path) -> None:
     workspace = Workspace(taught)
     before = Robot(workspace)
     before.next(6)
@@ -279,7 +279,7 @@ def test_who_came_meanwhile_joins_a_game_that_goes_on_and_nothing_is_lost(taught
     assert joined == ["user5"]  # the second time they were known
 
 
-def test_a_simulated_game_goes_on_without_those_who_came_meanwhile(room: Interrupted) -> None:
+def test_a_resumed_simulated_game_excludes_new_people(room: Interrupted) -> None:
     room.play(8)
     stood = room.standing
     let_join(room.workspace, "Zelda")
@@ -295,7 +295,7 @@ def test_a_simulated_game_goes_on_without_those_who_came_meanwhile(room: Interru
     assert room.workspace.room is hall
 
 
-def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dead(
+def test_the_clock_of_a_resumed_live_game_counts_only_played_time(
     taught: Path,
 ) -> None:
     workspace = Workspace(taught)
@@ -325,7 +325,7 @@ def test_the_clock_of_a_live_game_is_the_time_played_and_not_the_time_it_was_dea
     workspace.close()
 
 
-def test_a_request_that_staff_made_is_open_when_the_game_goes_on(taught: Path) -> None:
+def test_a_request_by_staff_stays_open_after_a_resume(taught: Path) -> None:
     workspace = Workspace(taught)
     before = Robot(workspace)
     before.next(3)
@@ -343,7 +343,7 @@ def test_a_request_that_staff_made_is_open_when_the_game_goes_on(taught: Path) -
     workspace.close()
 
 
-def test_the_clock_counts_on_from_what_staff_did_last(taught: Path) -> None:
+def test_the_clock_resumes_from_the_last_action_of_staff(taught: Path) -> None:
     workspace = Workspace(taught)
     before = Robot(workspace)
     before.next(3)
@@ -357,7 +357,7 @@ def test_the_clock_counts_on_from_what_staff_did_last(taught: Path) -> None:
     workspace.close()
 
 
-def test_people_sit_as_they_sat_when_the_game_goes_on(room: Interrupted) -> None:
+def test_people_keep_their_seats_in_a_resumed_game(room: Interrupted) -> None:
     moved = ["user3", "user1", "user4", "user2"]
     room.workspace.seat(moved)
     room.supervision = room.new()
@@ -371,7 +371,7 @@ def test_people_sit_as_they_sat_when_the_game_goes_on(room: Interrupted) -> None
     assert list(room.workspace.names) == moved and room.standing == stood
 
 
-def test_people_are_seated_for_the_next_game_as_they_sat_in_the_last_one(taught: Path) -> None:
+def test_people_keep_their_seats_for_the_next_game(taught: Path) -> None:
     workspace = Workspace(taught)
     moved = ["user3", "user1", "user4", "user2"]
     workspace.seat(moved)
@@ -383,7 +383,7 @@ def test_people_are_seated_for_the_next_game_as_they_sat_in_the_last_one(taught:
     again.close()
 
 
-def test_a_log_without_a_clock_has_the_sum_of_its_steps(room: Interrupted) -> None:
+def test_the_clock_of_an_old_log_is_the_sum_of_its_steps(room: Interrupted) -> None:
     room.play(9)
     past = room.past()
     played = room.supervision.game.log.seconds
@@ -395,7 +395,7 @@ def test_a_log_without_a_clock_has_the_sum_of_its_steps(room: Interrupted) -> No
     assert room.supervision.seconds == pytest.approx(played)
 
 
-def test_who_left_before_the_first_step_of_a_live_game_is_away_when_it_goes_on(
+def test_a_person_who_left_before_the_first_step_stays_absent(
     taught: Path,
 ) -> None:
     workspace = Workspace(taught)
@@ -409,7 +409,7 @@ def test_who_left_before_the_first_step_of_a_live_game_is_away_when_it_goes_on(
 
 
 @pytest.mark.slow
-def test_the_log_of_every_game_leads_where_the_game_was(room: Interrupted) -> None:
+def test_replaying_the_log_of_any_game_gives_its_state(room: Interrupted) -> None:
     policy, _ = load_policy(room.workspace.store, room.workspace.activity)
     kinds = ("card-out-of-sight", "request-withdrawn", "no-effect", "carried-off", "request-stuck")
     game = room.workspace.supervision(

@@ -1,4 +1,4 @@
-"""The keymap: one meaning for a key, a word for each action, and keys that a user has set."""
+"""The keymap: one meaning for each key, a word for each action, and custom keys."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def test_no_key_has_two_meanings() -> None:
     assert [key for key, count in keys.items() if count > 1] == []
 
 
-def test_every_action_has_a_name_and_every_changeable_one_a_word_of_its_own() -> None:
+def test_every_changeable_action_has_a_unique_word() -> None:
     assert set(NAMES) == set(BY_ID)
     words = Counter(action.word for action in ACTIONS if action.word)
     assert [word for word, count in words.items() if count > 1] == []
     assert [action.id for action in ACTIONS if not action.fixed and not action.word] == []
 
 
-def test_what_works_while_one_types_has_a_key_that_no_line_takes() -> None:
+def test_actions_during_typing_have_a_key_that_is_no_letter() -> None:
     typing = [action for action in ACTIONS if action.with_line]
     assert [a.id for a in typing if all(is_letter(key) for key in a.keys)] == []
 
@@ -47,7 +47,9 @@ def test_what_works_while_one_types_has_a_key_that_no_line_takes() -> None:
         ('seen = "z"', "acknowledge", ("z",)),
     ],
 )
-def test_a_user_changes_keys(tmp_path: Path, written: str, id: str, keys: tuple[str, ...]) -> None:
+def test_a_user_can_change_keys(
+    tmp_path: Path, written: str, id: str, keys: tuple[str, ...]
+) -> None:
     keymap = keys_of(tmp_path, written)
     assert keymap.keys(id) == keys
     assert all(keymap.action(key) == id for key in keys)
@@ -66,12 +68,14 @@ def test_a_user_changes_keys(tmp_path: Path, written: str, id: str, keys: tuple[
         ('pause = "d"', r"keys\.pause.* is the key of drive"),
     ],
 )
-def test_a_mistake_is_one_sentence_with_its_place(tmp_path: Path, written: str, told: str) -> None:
+def test_a_mistake_is_reported_in_one_sentence_with_its_place(
+    tmp_path: Path, written: str, told: str
+) -> None:
     with pytest.raises(ProfileError, match=told):
         keys_of(tmp_path, written)
 
 
-def test_texts_name_the_keys_that_were_set(tmp_path: Path) -> None:
+def test_texts_name_custom_keys(tmp_path: Path) -> None:
     keymap = keys_of(tmp_path, 'undo = "f12"')
     assert with_keys("{undo} takes it back, {redo} not; {other}", keymap) == (
         "f12 takes it back, f3 not; {other}"
@@ -90,7 +94,7 @@ def test_texts_name_the_keys_that_were_set(tmp_path: Path) -> None:
         (sensors.look_words("camera"), ["camera"]),
     ],
 )
-def test_lists_and_pictures_name_the_key_that_does_it(text: str, ids: list[str]) -> None:
+def test_lists_and_pictures_name_the_current_key(text: str, ids: list[str]) -> None:
     set_by_user = {id: (f"f1{number}",) for number, id in enumerate(ids)}
     told = with_keys(text, Keymap(set_by_user))
     assert [key for (key,) in set_by_user.values() if key in told] == [

@@ -1,4 +1,4 @@
-"""Busy processes beside a bench game are there for as long as it is, and no longer."""
+"""The load processes beside a bench game run as long as the game."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from tangy_tui.app.machine_load import machine_load
 
 
-def test_processes_are_busy_while_the_game_goes_on_and_gone_after_it(
+def test_the_load_runs_as_long_as_the_game(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     begun: list[subprocess.Popen[bytes]] = []
@@ -26,7 +26,7 @@ def test_processes_are_busy_while_the_game_goes_on_and_gone_after_it(
     assert all(one.returncode is not None for one in begun)
 
 
-def test_without_load_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_process_starts_without_load(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(subprocess, "Popen", None)
     with machine_load(0):
         pass

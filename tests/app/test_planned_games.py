@@ -1,4 +1,4 @@
-"""Games by what staff chose: patterns in turn, claims, pace, visits, comings and goings."""
+"""Games by a plan of staff: patterns in turn, claims, pace, visits, arrivals and departures."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from tangy_tui.text.report import changes_lines, staff_rows
 
 
 class Planned:
-    """A run of simulated games, with all that is told in them."""
+    """A run of simulated games, with all its events."""
 
     def __init__(self, folder: Path, users: int = 4) -> None:
         self.workspace = Workspace(folder, users=users)
@@ -89,7 +89,7 @@ def planned(taught: Path) -> Iterator[Planned]:
     one.workspace.close()
 
 
-def test_a_game_is_played_on_for_each_pattern_that_was_chosen(planned: Planned) -> None:
+def test_a_game_continues_for_each_chosen_pattern(planned: Planned) -> None:
     planned.begin(GamePlan(("line", "two lines", "full card")))
     planned.play()
     ended = planned.events[-1]
@@ -99,7 +99,7 @@ def test_a_game_is_played_on_for_each_pattern_that_was_chosen(planned: Planned) 
     assert planned.supervision.faults == []
 
 
-def test_of_several_winners_each_is_celebrated_before_the_game_ends(planned: Planned) -> None:
+def test_each_of_several_winners_is_celebrated(planned: Planned) -> None:
     planned.begin(GamePlan(several=True))
     world, winning = planned.world, winning_state(planned.workspace.activity.user_states)
     while world.tracker.seen != winning:
@@ -113,7 +113,7 @@ def test_of_several_winners_each_is_celebrated_before_the_game_ends(planned: Pla
     assert planned.changes()[0] == "others first"
 
 
-def test_a_claim_is_told_by_the_numbers_that_were_called(planned: Planned) -> None:
+def test_a_claim_is_checked_against_the_called_numbers(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play(calls=3)
     assert planned.do(ClaimCard(2)) == ["claim wrong"] and planned.do(ClaimCard(5)) == [
@@ -134,7 +134,7 @@ def test_a_claim_is_told_by_the_numbers_that_were_called(planned: Planned) -> No
     assert planned.celebrated()[-1] == "user3"
 
 
-def test_what_staff_did_is_told_with_names_and_the_pace_they_came_to(planned: Planned) -> None:
+def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play(calls=2)
     for _ in range(3):
@@ -154,7 +154,7 @@ def test_what_staff_did_is_told_with_names_and_the_pace_they_came_to(planned: Pl
     assert "help for Rosa" in told
 
 
-def test_a_call_that_is_taken_back_comes_again_and_is_told_to_the_group(planned: Planned) -> None:
+def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play(calls=4)
     *_, second, last = planned.world.called_now
@@ -169,7 +169,7 @@ def test_a_call_that_is_taken_back_comes_again_and_is_told_to_the_group(planned:
     assert (change.record.what, change.record.number) == ("taken back", second)
 
 
-def test_the_pace_is_changed_in_mid_game_and_stays_within_its_bounds(planned: Planned) -> None:
+def test_the_pace_can_be_changed_within_bounds(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play(calls=2)
     assert planned.do(SetPace(10)) == ["pace"]
@@ -184,7 +184,7 @@ def test_the_pace_is_changed_in_mid_game_and_stays_within_its_bounds(planned: Pl
     assert planned.world.pace == 60
 
 
-def test_who_has_left_is_not_seen_to_until_they_are_here_again(planned: Planned) -> None:
+def test_absent_people_are_not_visited_until_they_return(planned: Planned) -> None:
     planned.begin(GamePlan())
     assert planned.do(GoesAway("user1")) == ["goes"] and planned.do(GoesAway("user1")) == [
         "away before"
@@ -196,7 +196,7 @@ def test_who_has_left_is_not_seen_to_until_they_are_here_again(planned: Planned)
     assert planned.world.tracker.ask("user1")
 
 
-def test_everybody_is_visited_and_nobody_who_asks_waits_for_that(taught: Path) -> None:
+def test_everybody_is_visited_without_delaying_requests(taught: Path) -> None:
     planned = Planned(taught, users=8)
     planned.begin(GamePlan(("full card",), visits=True))
     planned.play()
@@ -207,7 +207,7 @@ def test_everybody_is_visited_and_nobody_who_asks_waits_for_that(taught: Path) -
     planned.workspace.close()
 
 
-def test_in_a_large_group_calls_have_their_share_and_nobody_who_asks_waits_for_ever(
+def test_a_large_group_shares_time_between_calls_and_requests(
     taught: Path,
 ) -> None:
     planned = Planned(taught, users=24)
@@ -228,7 +228,7 @@ def test_in_a_large_group_calls_have_their_share_and_nobody_who_asks_waits_for_e
     planned.workspace.close()
 
 
-def test_the_log_and_the_report_tell_what_changed_beside_the_behaviours(taught: Path) -> None:
+def test_the_log_and_the_report_include_changes_of_the_game(taught: Path) -> None:
     planned = Planned(taught, users=24)
     planned.begin(GamePlan(("line", "full card"), visits=True, pace=5))
     planned.play(calls=30)
@@ -260,13 +260,13 @@ def test_the_log_and_the_report_tell_what_changed_beside_the_behaviours(taught: 
     planned.workspace.close()
 
 
-def test_in_a_small_group_whoever_asks_never_waits_for_a_call(planned: Planned) -> None:
+def test_requests_in_a_small_group_never_wait_for_a_call(planned: Planned) -> None:
     planned.begin(GamePlan(("full card",), visits=True, pace=5))
     planned.play()
     assert "visit" in planned.changes() and "calls first" not in planned.changes()
 
 
-def test_a_game_in_which_calls_come_first_goes_on_after_an_interruption(taught: Path) -> None:
+def test_a_game_with_calls_first_resumes_after_an_interruption(taught: Path) -> None:
     planned = Planned(taught, users=24)
     planned.begin(GamePlan(("full card",), visits=True, pace=5))
     while planned.world.tracker.calls_first < 3:
@@ -310,9 +310,7 @@ def test_a_right_claim_waits_for_no_call(taught: Path) -> None:
 
 
 @pytest.mark.parametrize("calls", [6, 40, 60])
-def test_a_planned_game_that_was_interrupted_goes_on_as_it_would_have(
-    taught: Path, calls: int
-) -> None:
+def test_a_resumed_planned_game_equals_an_uninterrupted_one(taught: Path, calls: int) -> None:
     planned = Planned(taught)
     planned.begin(GamePlan(("line", "two lines", "full card"), several=True, visits=True))
     planned.play(calls=4)
@@ -341,7 +339,7 @@ def test_a_planned_game_that_was_interrupted_goes_on_as_it_would_have(
 
 
 @pytest.mark.parametrize("calls", [0, 4])
-def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, calls: int) -> None:
+def test_choices_of_staff_during_a_game_survive_an_interruption(taught: Path, calls: int) -> None:
     planned = Planned(taught)
     planned.begin(GamePlan(absent=("user3",), minutes=40))
     planned.play(calls=calls)
@@ -371,7 +369,7 @@ def test_what_staff_chose_in_mid_game_holds_after_an_interruption(taught: Path, 
     again.workspace.close()
 
 
-def test_visits_go_to_whom_nobody_has_visited_also_after_an_interruption(taught: Path) -> None:
+def test_unvisited_people_come_first_also_after_an_interruption(taught: Path) -> None:
     planned = Planned(taught, users=8)
     planned.begin(GamePlan(("full card",)))
     planned.play(calls=15)
@@ -391,7 +389,7 @@ def test_visits_go_to_whom_nobody_has_visited_also_after_an_interruption(taught:
     again.workspace.close()
 
 
-def test_staff_see_the_time_and_the_visits_from_before_an_interruption(taught: Path) -> None:
+def test_time_and_visits_survive_an_interruption(taught: Path) -> None:
     planned = Planned(taught)
     planned.begin(GamePlan())
     planned.play(calls=15)
@@ -409,7 +407,7 @@ def test_staff_see_the_time_and_the_visits_from_before_an_interruption(taught: P
     planned.workspace.close()
 
 
-def test_a_person_is_visited_once_the_robot_stands_there(planned: Planned) -> None:
+def test_a_visit_counts_on_arrival(planned: Planned) -> None:
     planned.begin(GamePlan())
     person = planned.world.people[1]
     scene = replace(planned.world.scene(), place=person)
@@ -431,7 +429,7 @@ def test_a_person_is_visited_once_the_robot_stands_there(planned: Planned) -> No
     assert (now.state, now.unvisited) == ("visited", 0)
 
 
-def test_where_nothing_is_chosen_nothing_changes_beside_the_behaviours(planned: Planned) -> None:
+def test_a_default_plan_logs_no_changes_of_the_game(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play()
     store = planned.workspace.store
@@ -453,7 +451,7 @@ def visits(planned: Planned) -> list[str]:
     return [event.person for event in told[last:] if event.what == "visit"]
 
 
-def test_when_all_numbers_are_called_each_card_is_looked_at(planned: Planned) -> None:
+def test_every_card_is_checked_after_the_last_number(planned: Planned) -> None:
     world = all_called(planned)
     planned.play()
     assert visits(planned) == [world.people[0]]  # who marks what was missed, and wins
@@ -464,7 +462,7 @@ def test_when_all_numbers_are_called_each_card_is_looked_at(planned: Planned) ->
     assert said[0] == world.activity.rules.all_called
 
 
-def test_a_game_that_nobody_can_win_comes_to_its_end(planned: Planned) -> None:
+def test_a_game_without_a_winner_ends(planned: Planned) -> None:
     world = all_called(planned)
     world.read_card = lambda: None  # type: ignore[method-assign]  # no card can be read
     planned.play()
@@ -481,7 +479,7 @@ def test_a_game_that_nobody_can_win_comes_to_its_end(planned: Planned) -> None:
     assert any("All numbers have been called, and nobody has won." in line for line in lines)
 
 
-def test_a_call_that_is_taken_back_comes_before_the_last_visits(planned: Planned) -> None:
+def test_a_call_that_is_taken_back_precedes_the_final_visits(planned: Planned) -> None:
     world = all_called(planned)
     world.read_card = lambda: None  # type: ignore[method-assign]
     while not planned.changes():
@@ -492,7 +490,7 @@ def test_a_call_that_is_taken_back_comes_before_the_last_visits(planned: Planned
     assert planned.changes().count("all called") == 2 and len(world.called_now) == 75
 
 
-def test_the_last_visits_go_on_after_an_interruption(taught: Path) -> None:
+def test_the_final_visits_resume_after_an_interruption(taught: Path) -> None:
     planned = Planned(taught)
     world = all_called(planned)
     while "visit" not in planned.changes():
@@ -511,7 +509,7 @@ def test_the_last_visits_go_on_after_an_interruption(taught: Path) -> None:
     again.workspace.close()
 
 
-def test_who_was_looked_at_after_the_last_number_is_not_looked_at_again(planned: Planned) -> None:
+def test_each_card_is_checked_once_after_the_last_number(planned: Planned) -> None:
     world = all_called(planned)
     world.read_card = lambda: None  # type: ignore[method-assign]
     while planned.changes().count("visit over") < 2:
@@ -521,7 +519,7 @@ def test_who_was_looked_at_after_the_last_number_is_not_looked_at_again(planned:
     assert list(past.visited(planned.workspace.activity)) == list(world.people[:2])
 
 
-def test_no_number_is_called_when_none_is_left_however_many_ask(taught: Path) -> None:
+def test_no_number_is_called_from_an_empty_deck(taught: Path) -> None:
     planned = Planned(taught, users=8)
     world = all_called(planned)
     world.read_card = lambda: None  # type: ignore[method-assign]
@@ -535,7 +533,7 @@ def test_no_number_is_called_when_none_is_left_however_many_ask(taught: Path) ->
     planned.workspace.close()
 
 
-def test_after_a_pattern_was_won_nobody_else_has_won(planned: Planned) -> None:
+def test_each_pattern_has_one_winner_by_default(planned: Planned) -> None:
     planned.world.users = replace(planned.world.users, miss=1.0, ask=1e-9)
     planned.begin(GamePlan(("line", "two lines", "full card")))
     planned.play(calls=75)
@@ -546,7 +544,7 @@ def test_after_a_pattern_was_won_nobody_else_has_won(planned: Planned) -> None:
     assert "nobody else has won" in changed_words(change, None, str)
 
 
-def test_after_the_last_number_all_who_have_the_pattern_win_if_staff_want_that(
+def test_several_winners_after_the_last_number_are_celebrated(
     planned: Planned,
 ) -> None:
     planned.world.users = replace(planned.world.users, miss=1.0, ask=1e-9)

@@ -1,4 +1,4 @@
-"""Questions of other programs become an activity that can be played."""
+"""Importing questions of other programs as an activity."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_aiken_format_is_read() -> None:
 
 
 @pytest.mark.parametrize("separator", [",", ";"])
-def test_the_table_of_kahoot_is_read_under_its_instructions(separator: str) -> None:
+def test_the_kahoot_table_is_read_below_its_instructions(separator: str) -> None:
     text = KAHOOT if separator == "," else KAHOOT.replace('"', "").replace("red, m", "red m")
     if separator == ";":
         text = text.replace("1,2\n", "1 2\n").replace(",", ";")
@@ -70,14 +70,16 @@ def test_a_mistake_names_its_line(text: str, line: int) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "hello", "a,b\n1,2\n", "\0"])
-def test_what_holds_no_question_is_refused(text: str) -> None:
+def test_a_file_without_questions_is_refused(text: str) -> None:
     with pytest.raises(TangyError):
         read_questions(text, "quiz")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("text", [AIKEN, KAHOOT])
-def test_it_can_be_checked_tried_and_answered(text: str, tangy: Tangy, tmp_path: Path) -> None:
+def test_an_imported_activity_can_be_checked_tried_and_played(
+    text: str, tangy: Tangy, tmp_path: Path
+) -> None:
     (tmp_path / "quiz").write_text("\ufeff" + text, encoding="utf-8")
     made = tangy("activity", "import", tmp_path / "quiz", "--title", "Garden quiz",
                  "--folder", tmp_path)  # fmt: skip

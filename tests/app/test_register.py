@@ -1,4 +1,4 @@
-"""Who takes part: people are added, archived and brought back, and seats are found for all."""
+"""The register: people are added, archived and restored, and everybody gets a seat."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def ids(workspace: Workspace) -> list[str]:
     return [person.id for person in registered(workspace.store)]
 
 
-def test_people_are_added_archived_and_brought_back(data_folder: Path) -> None:
+def test_people_are_added_archived_and_restored(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     assert ids(workspace) == ["user1", "user2", "user3", "user4"]
     assert add_person(workspace.store) == "user5"
@@ -38,14 +38,14 @@ def test_people_are_added_archived_and_brought_back(data_folder: Path) -> None:
     workspace.close()
 
 
-def test_a_guest_is_nobody_of_the_register(data_folder: Path) -> None:
+def test_a_guest_is_not_in_the_register(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     assert [add_person(workspace.store, guest=True) for _ in range(2)] == ["guest1", "guest2"]
     assert len(ids(workspace)) == 4
     workspace.close()
 
 
-def test_the_last_person_is_not_archived_and_nobody_is_the_twenty_fifth(data_folder: Path) -> None:
+def test_the_register_has_between_1_and_24_people(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     while len(ids(workspace)) < MOST_PEOPLE:
         add_person(workspace.store)
@@ -59,7 +59,7 @@ def test_the_last_person_is_not_archived_and_nobody_is_the_twenty_fifth(data_fol
 
 
 @pytest.mark.parametrize("count", [1, 4, 8, 9, 12, MOST_PEOPLE])
-def test_everybody_has_a_seat_of_their_own_in_the_room_for_so_many(count: int) -> None:
+def test_everybody_has_a_separate_seat_in_the_room(count: int) -> None:
     room = room_for(count)
     seats = room.seated(count)
     assert len(set(seats)) == count
@@ -78,7 +78,7 @@ def test_people_in_a_hall_share_the_tables(count: int, each: list[int]) -> None:
         assert all(left <= hall.seated(count)[place].x <= right for place in sitting)
 
 
-def test_the_tables_of_a_hall_stand_in_a_row_within_what_they_take_together() -> None:
+def test_the_tables_of_a_hall_are_in_a_row() -> None:
     hall = load_room("hall")
     assert len(hall.tables) == 3
     assert hall.table == (hall.tables[0][0], hall.tables[0][1], hall.tables[2][2], 5.8)
@@ -100,7 +100,7 @@ def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
     workspace.close()
 
 
-def test_a_change_is_told_by_its_own_lines_until_all_is_asked_for(data_folder: Path) -> None:
+def test_a_change_prints_only_its_own_lines(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     setup, said = SetUp.of(workspace), list[str]()
     everything = len(text.lines_of(setup)) + 1  # and the help
@@ -136,7 +136,7 @@ def test_people_and_the_activity_are_set_up_by_lines(taught: Path) -> None:
     workspace.close()
 
 
-def test_teams_are_set_up_as_they_are(data_folder: Path) -> None:
+def test_teams_cannot_be_changed_in_the_setup(data_folder: Path) -> None:
     workspace = Workspace(data_folder, activity="team-trivia")
     setup, said = SetUp.of(workspace), list[str]()
     lines = iter(["guest Anna", "words gentle", "time 20", "begin"])
@@ -146,7 +146,7 @@ def test_teams_are_set_up_as_they_are(data_folder: Path) -> None:
     workspace.close()
 
 
-def test_a_guest_takes_part_on_that_day_alone_and_is_forgotten_then(data_folder: Path) -> None:
+def test_a_guest_is_forgotten_after_the_day(data_folder: Path) -> None:
     now = [datetime(2026, 5, 1, 10, tzinfo=UTC)]
     workspace = Workspace(data_folder, now=lambda: now[0])
     guest = let_join(workspace, "Anna", guest=True)
@@ -167,7 +167,7 @@ def test_a_guest_takes_part_on_that_day_alone_and_is_forgotten_then(data_folder:
     tomorrow.close()
 
 
-def test_a_person_whose_name_is_taken_does_not_join(data_folder: Path) -> None:
+def test_a_person_with_a_used_name_is_refused(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     let_join(workspace, "Anna")
     before = ids(workspace)

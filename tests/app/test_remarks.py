@@ -1,4 +1,4 @@
-"""What a teacher may have overlooked is told at once, once, and can be answered or put off."""
+"""Remarks on oversights of a teacher: reported at once, only once, answered or deferred."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def unasked(teaching: TeachingSession) -> str:
 # ------------------------------------------------------------------ five kinds of wrong teaching
 
 
-def test_a_stage_that_is_passed_over_is_told_once_with_what_was_due(workspace: Workspace) -> None:
+def test_a_skipped_stage_is_reported_once_with_its_behaviour(workspace: Workspace) -> None:
     teaching = session(workspace)
     until(teaching, "socialize")
     (remark,) = do(teaching, "call number")
@@ -94,7 +94,7 @@ def test_a_stage_that_is_passed_over_is_told_once_with_what_was_due(workspace: W
     assert same(remark, do(teaching, *["call number"] * 3)) == []
 
 
-def test_a_contradiction_to_oneself_is_told_once(workspace: Workspace) -> None:
+def test_a_contradiction_to_an_own_step_is_reported_once(workspace: Workspace) -> None:
     teaching = session(workspace)
     (remark,) = do(teaching, "greet everyone", "call number", "tell a joke")
     assert isinstance(remark, Contradicted)
@@ -104,7 +104,7 @@ def test_a_contradiction_to_oneself_is_told_once(workspace: Workspace) -> None:
     assert same(remark, do(another, "greet everyone", "tell a joke", "call number")) == []
 
 
-def test_a_contradiction_to_another_is_told_once_to_each_teacher(workspace: Workspace) -> None:
+def test_a_contradiction_to_another_teacher_is_reported_once_to_each(workspace: Workspace) -> None:
     do(session(workspace, "Ada"), "greet everyone", "call number")
     (remark,) = do(session(workspace, "Bea"), "greet everyone", "tell a joke")
     assert isinstance(remark, Contradicted)
@@ -116,7 +116,7 @@ def test_a_contradiction_to_another_is_told_once_to_each_teacher(workspace: Work
     assert back.earlier.teacher == "Bea"
 
 
-def test_going_to_who_did_not_ask_is_told_once(workspace: Workspace) -> None:
+def test_a_visit_without_a_request_is_reported_once(workspace: Workspace) -> None:
     teaching = session(workspace)
     until(teaching, "navigate")
     waiting = teaching.world.observe().attended
@@ -127,7 +127,9 @@ def test_going_to_who_did_not_ask_is_told_once(workspace: Workspace) -> None:
     assert remarks(show(teaching, unasked(teaching))) == []
 
 
-def test_a_game_that_ends_before_its_end_is_told_with_what_lacks(workspace: Workspace) -> None:
+def test_a_game_that_ends_early_is_reported_with_the_missing_behaviour(
+    workspace: Workspace,
+) -> None:
     teaching = session(workspace)
     do(teaching, "greet everyone")
     (remark,) = do(teaching, "say goodbye")
@@ -137,7 +139,7 @@ def test_a_game_that_ends_before_its_end_is_told_with_what_lacks(workspace: Work
     assert not teaching.demonstration.finished
 
 
-def test_that_a_game_ends_early_is_told_before_that_it_contradicts(workspace: Workspace) -> None:
+def test_an_early_end_is_reported_before_a_contradiction(workspace: Workspace) -> None:
     teaching = session(workspace)
     do(teaching, "greet everyone", "call number")
     situation = teaching.demonstration.steps[-1].state.situation
@@ -148,7 +150,7 @@ def test_that_a_game_ends_early_is_told_before_that_it_contradicts(workspace: Wo
 
 @pytest.mark.parametrize("seed", range(1, 9))
 @pytest.mark.parametrize("guided", [False, True])
-def test_a_faultless_teacher_hears_nothing(workspace: Workspace, seed: int, guided: bool) -> None:
+def test_a_faultless_teacher_gets_no_remark(workspace: Workspace, seed: int, guided: bool) -> None:
     teaching = workspace.teaching("Ada", seed, guided=guided)
     teaching.begin(resume=False)
     told = list(ScriptedTeacher(teaching).demonstrate())
@@ -156,7 +158,7 @@ def test_a_faultless_teacher_hears_nothing(workspace: Workspace, seed: int, guid
     assert remarks(told) == []
 
 
-def test_a_faultless_teacher_of_another_activity_hears_nothing(tmp_path: Path) -> None:
+def test_a_faultless_teacher_of_another_activity_gets_no_remark(tmp_path: Path) -> None:
     for name in ("trivia", str(Path(__file__).parents[1] / "lanterns.toml")):
         opened = Workspace(tmp_path / Path(name).stem, activity=name)
         teaching = opened.teaching("Ada", 3)
@@ -186,7 +188,7 @@ def contradict(workspace: Workspace) -> TeachingSession:
         ("both", {"joke", "call number"}),
     ],
 )
-def test_the_answer_is_logged_as_a_settled_conflict(
+def test_the_answer_is_logged_as_a_resolved_conflict(
     workspace: Workspace, answer: str, right: set[str]
 ) -> None:
     teaching = contradict(workspace)
@@ -203,7 +205,7 @@ def test_the_answer_is_logged_as_a_settled_conflict(
     assert same(settled.remark, do(teaching, "call number", "tell a joke")) == []
 
 
-def test_a_teacher_can_go_on_teaching_after_the_first_step_was_set_aside(
+def test_teaching_continues_after_the_first_step_was_rejected(
     workspace: Workspace,
 ) -> None:
     teaching = session(workspace)
@@ -218,7 +220,7 @@ def test_a_teacher_can_go_on_teaching_after_the_first_step_was_set_aside(
     assert do(session(workspace, seed=3), "call number")
 
 
-def test_what_is_put_off_stays_a_conflict_and_is_not_asked_again(workspace: Workspace) -> None:
+def test_a_deferred_remark_stays_a_conflict(workspace: Workspace) -> None:
     teaching = contradict(workspace)
     (settled,) = teaching.apply(Settle("later"))
     assert isinstance(settled, Settled)
@@ -227,13 +229,13 @@ def test_what_is_put_off_stays_a_conflict_and_is_not_asked_again(workspace: Work
     assert same(settled.remark, do(teaching, "tell a joke")) == []
 
 
-def test_going_on_puts_it_off(workspace: Workspace) -> None:
+def test_the_next_command_defers_a_remark(workspace: Workspace) -> None:
     teaching = contradict(workspace)
     teaching.apply(Say("call number"))
     assert teaching.remark is None
 
 
-def test_undoing_the_step_takes_its_answer_back(workspace: Workspace) -> None:
+def test_undoing_the_step_removes_its_resolution(workspace: Workspace) -> None:
     teaching = contradict(workspace)
     teaching.apply(Settle("this"))
     teaching.apply(Undo())
@@ -242,7 +244,7 @@ def test_undoing_the_step_takes_its_answer_back(workspace: Workspace) -> None:
     assert len(do(teaching, "tell a joke")) == 1
 
 
-def test_a_passed_over_stage_can_be_called_right_for_good(workspace: Workspace) -> None:
+def test_a_skipped_stage_can_be_accepted(workspace: Workspace) -> None:
     teaching = session(workspace)
     until(teaching, "socialize")
     do(teaching, "call number")
@@ -252,7 +254,7 @@ def test_a_passed_over_stage_can_be_called_right_for_good(workspace: Workspace) 
     assert said.wrong == frozenset()
 
 
-def test_numbers_and_words_answer_what_can_be_answered(workspace: Workspace) -> None:
+def test_numbers_and_words_answer_a_remark(workspace: Workspace) -> None:
     remark = contradict(workspace).remark
     assert remark is not None
     read = [read_settling(text, remark) for text in ("1", "2", "3", "4", "5", "later", "hello")]

@@ -1,4 +1,4 @@
-"""Rooms of a house's own: named on the command line, chosen in set-up, kept, and gone on in."""
+"""Custom rooms: named on the command line, chosen in the setup, stored, and resumed."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def lounge(folder: Path, name: str = "lounge.toml", seats: int = len(SEATS)) -> 
     return path
 
 
-def test_people_sit_at_the_tables_of_a_room_that_is_named(tmp_path: Path) -> None:
+def test_people_sit_at_the_tables_of_the_given_room(tmp_path: Path) -> None:
     path = lounge(tmp_path)
     with closing(Workspace(tmp_path / "data", room=str(path))) as workspace:
         assert workspace.room.title == "Lounge"
@@ -57,7 +57,7 @@ def test_people_sit_at_the_tables_of_a_room_that_is_named(tmp_path: Path) -> Non
         assert workspace.room.stand("user4", ids).y == pytest.approx(3.7)
 
 
-def test_a_room_in_the_data_folder_is_known_by_its_name(tmp_path: Path) -> None:
+def test_a_room_in_the_data_folder_is_found_by_name(tmp_path: Path) -> None:
     lounge(tmp_path, "rooms/lounge.toml")
     with closing(Workspace(tmp_path, room="lounge")) as workspace:
         assert workspace.room_source == "lounge"
@@ -65,7 +65,7 @@ def test_a_room_in_the_data_folder_is_known_by_its_name(tmp_path: Path) -> None:
         Workspace(tmp_path, room="loung")
 
 
-def test_a_room_that_is_too_small_is_refused_before_anything_begins(tmp_path: Path) -> None:
+def test_a_room_that_is_too_small_is_refused(tmp_path: Path) -> None:
     path = lounge(tmp_path, seats=3)
     with pytest.raises(TangyError, match="Lounge has 3 seats, and 4 people take part"):
         Workspace(tmp_path / "data", room=str(path))
@@ -73,7 +73,7 @@ def test_a_room_that_is_too_small_is_refused_before_anything_begins(tmp_path: Pa
         assert len(workspace.room.seated(3)) == 3  # the first was closed again
 
 
-def test_staff_choose_a_room_and_it_is_kept(tmp_path: Path) -> None:
+def test_a_chosen_room_is_stored(tmp_path: Path) -> None:
     lounge(tmp_path, "rooms/lounge.toml")
     (tmp_path / "rooms/wrong.toml").write_text("name = 'wrong'\nwidht = 3\n")
     with closing(Workspace(tmp_path)) as workspace:
@@ -106,7 +106,7 @@ def test_a_chosen_room_moves_with_its_data_folder_and_may_be_deleted(tmp_path: P
         assert "lounge" in workspace.room_problem
 
 
-def test_more_people_than_seats_sit_elsewhere_and_staff_read_why(tmp_path: Path) -> None:
+def test_too_many_people_get_another_room_with_a_reason(tmp_path: Path) -> None:
     path = lounge(tmp_path, "rooms/lounge.toml")
     with closing(Workspace(tmp_path)) as workspace:
         setup = SetUp.of(workspace)
@@ -121,7 +121,7 @@ def test_more_people_than_seats_sit_elsewhere_and_staff_read_why(tmp_path: Path)
         )
 
 
-def test_a_game_is_gone_on_with_and_watched_in_its_room(taught: Path, tmp_path: Path) -> None:
+def test_a_game_is_resumed_and_watched_in_its_room(taught: Path, tmp_path: Path) -> None:
     path = lounge(tmp_path)
     with closing(Workspace(taught, room=str(path))) as workspace:
         policy, _ = load_policy(workspace.store, workspace.activity)
@@ -165,7 +165,7 @@ def test_a_mistake_is_told_with_its_line(tmp_path: Path, old: str, new: str, sai
     assert said in str(caught.value)
 
 
-def test_a_choice_that_could_not_be_read_again_is_refused(tmp_path: Path) -> None:
+def test_an_unstorable_choice_is_refused(tmp_path: Path) -> None:
     keep_choice(tmp_path / "room.toml", "room", 'a "quoted" \\ Käse')
     assert read_choice(tmp_path / "room.toml", "room") == 'a "quoted" \\ Käse'
     for choice in ("del\x7f", "not UTF-8: \udcff"):

@@ -1,4 +1,4 @@
-"""Others look on at games through the door of the data folder, and can stop the robot."""
+"""Other consoles watch games over a socket in the data folder, and can stop the robot."""
 
 from __future__ import annotations
 
@@ -58,9 +58,7 @@ def seen(guest: Guest) -> Guest:
     return guest
 
 
-def test_a_guest_sees_who_drives_and_what_there_is_to_see(
-    guest: Guest, control: GameController
-) -> None:
+def test_a_guest_sees_the_operator_and_the_scene(guest: Guest, control: GameController) -> None:
     view = seen(guest).view
     assert view is not None
     assert (view.driver, view.world, view.step, view.phase) == (
@@ -87,7 +85,7 @@ def test_a_guest_sees_what_changes(guest: Guest, control: GameController) -> Non
     wait_until(lambda: guest.look() and guest.view is not None and guest.view.step == 6)
 
 
-def test_a_guest_stops_the_robot_and_the_log_says_who(
+def test_a_guest_stops_the_robot_and_the_log_names_the_guest(
     guest: Guest, control: GameController, workspace: Workspace
 ) -> None:
     told: list[str] = []
@@ -99,7 +97,7 @@ def test_a_guest_stops_the_robot_and_the_log_says_who(
     assert action.by == "Bea"
 
 
-def test_nothing_is_stopped_where_no_game_is_shown(
+def test_a_stop_without_a_game_is_not_acknowledged(
     guest: Guest, control: GameController, workspace: Workspace
 ) -> None:
     workspace.door.detach(control)
@@ -108,7 +106,7 @@ def test_nothing_is_stopped_where_no_game_is_shown(
     assert control.phase == "running"
 
 
-def test_where_nobody_is_there_it_is_said(tmp_path: Path) -> None:
+def test_a_missing_program_is_reported(tmp_path: Path) -> None:
     guest = Guest(tmp_path)
     assert not guest.look()
     with pytest.raises(NobodyThere):
@@ -122,7 +120,7 @@ def test_a_guest_notices_that_the_program_has_ended(guest: Guest, workspace: Wor
     assert not (workspace.store.folder / FILE).exists()
 
 
-def test_what_a_killed_program_left_is_in_nobodys_way(workspace: Workspace) -> None:
+def test_a_stale_socket_is_replaced(workspace: Workspace) -> None:
     left = socket.socket(socket.AF_UNIX)
     with reachable(workspace.store.folder) as place:
         left.bind(f"{place}/{FILE}")
@@ -133,11 +131,11 @@ def test_what_a_killed_program_left_is_in_nobodys_way(workspace: Workspace) -> N
     guest.close()
 
 
-def test_only_the_user_may_come_in(control: GameController, data_folder: Path) -> None:
+def test_only_the_user_can_connect(control: GameController, data_folder: Path) -> None:
     assert (data_folder / FILE).stat().st_mode & 0o777 == 0o600
 
 
-def test_a_folder_far_down_has_a_door_as_well(tmp_path: Path) -> None:
+def test_a_deep_folder_has_a_socket(tmp_path: Path) -> None:
     deep = tmp_path / ("far" * 30) / ("down" * 20)
     workspace = Workspace(deep)
     workspace.door.open()
@@ -150,7 +148,7 @@ def test_a_folder_far_down_has_a_door_as_well(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "said", [b"\xff\x00\n", b"[" * 900 + b"\n", b'{"stop": 5}\n', b"x" * (LONGEST_LINE + 5), b"\n"]
 )
-def test_nothing_but_a_stop_does_anything(
+def test_a_guest_can_only_stop_the_robot(
     said: bytes, control: GameController, guest: Guest, data_folder: Path
 ) -> None:
     with socket.socket(socket.AF_UNIX) as strange, reachable(data_folder) as place:
@@ -160,7 +158,7 @@ def test_nothing_but_a_stop_does_anything(
     assert control.phase == "running"
 
 
-def test_guests_who_do_not_listen_hold_up_nobody(
+def test_guests_that_do_not_read_delay_nobody(
     control: GameController, guest: Guest, data_folder: Path
 ) -> None:
     deaf = []
@@ -175,7 +173,7 @@ def test_guests_who_do_not_listen_hold_up_nobody(
         one.close()
 
 
-def test_the_log_is_told_once_as_it_grows(control: GameController, data_folder: Path) -> None:
+def test_each_event_of_the_log_is_sent_once(control: GameController, data_folder: Path) -> None:
     with Store.open(data_folder, write=False) as store:
         log = WatchedLog(store)
         first = log.news()
@@ -189,7 +187,7 @@ def test_the_log_is_told_once_as_it_grows(control: GameController, data_folder: 
         assert more.replay.moments[: len(first.moments)] == list(first.moments)
 
 
-def test_a_stop_reaches_the_robot_after_the_door_was_opened_anew(
+def test_a_stop_reaches_the_robot_after_the_door_reopened(
     guest: Guest, control: GameController, workspace: Workspace, data_folder: Path
 ) -> None:
     seen(guest)
@@ -203,7 +201,9 @@ def test_a_stop_reaches_the_robot_after_the_door_was_opened_anew(
     again.close()
 
 
-def test_a_stop_comes_in_however_many_look_on(control: GameController, data_folder: Path) -> None:
+def test_a_stop_arrives_despite_the_maximum_number_of_guests(
+    control: GameController, data_folder: Path
+) -> None:
     others = [Guest(data_folder) for _ in range(MOST_GUESTS)]
     for other in others:
         seen(other)
@@ -221,7 +221,7 @@ def test_a_name_of_any_length_stops_the_robot(guest: Guest, control: GameControl
     assert control.phase == "stopped"
 
 
-def test_the_door_stays_open_whatever_goes_wrong_behind_it(
+def test_the_door_survives_errors_of_the_screen(
     guest: Guest, control: GameController, workspace: Workspace
 ) -> None:
     def breaks(guest: str) -> None:
@@ -236,7 +236,7 @@ def test_the_door_stays_open_whatever_goes_wrong_behind_it(
     assert control.phase == "stopped"
 
 
-def test_who_comes_late_sees_the_game_as_it_is(control: GameController, data_folder: Path) -> None:
+def test_a_late_guest_sees_the_current_state(control: GameController, data_folder: Path) -> None:
     early = seen(Guest(data_folder))
     early.close()
     go_on_by_script(control, expert=False)
@@ -246,6 +246,8 @@ def test_who_comes_late_sees_the_game_as_it_is(control: GameController, data_fol
     late.close()
 
 
-def test_a_driver_of_any_name_can_be_looked_on_at(guest: Guest, control: GameController) -> None:
+def test_a_game_of_an_operator_with_any_name_can_be_watched(
+    guest: Guest, control: GameController
+) -> None:
     control.by = "Andr\udce9"  # a login name in an old encoding
     assert seen(guest).view is not None

@@ -1,4 +1,4 @@
-"""Games with staff at the lines: each line may step in at any time, and a game never hangs."""
+"""Games controlled by lines: a line may intervene at any time, and a game never hangs."""
 
 from __future__ import annotations
 
@@ -65,21 +65,21 @@ def told(
     return written, games.run(1)
 
 
-def test_at_the_end_of_the_lines_a_game_is_played_to_its_end(workspace: Workspace) -> None:
+def test_a_game_plays_to_its_end_after_the_last_line(workspace: Workspace) -> None:
     written, ended = told(workspace)
     assert ended and NO_MORE in written
     assert any("The game is over" in line for line in written)
 
 
 @pytest.mark.parametrize("lines", [("pause",), ("stop the robot",), ("take over",)])
-def test_where_somebody_is_waited_for_and_nobody_is_there_it_ends(
+def test_a_game_that_waits_without_further_lines_ends(
     workspace: Workspace, lines: tuple[str, ...]
 ) -> None:
     written, ended = told(workspace, *lines, speed=50)
     assert not ended and NOBODY in written
 
 
-def test_staff_pause_stop_go_on_take_over_and_end(workspace: Workspace) -> None:
+def test_staff_pause_stop_resume_take_over_and_end_by_lines(workspace: Workspace) -> None:
     written, ended = told(
         workspace, "pause", "where", "go on", "wait until called", "Stop it!", "go on",
         "take over", "wait until asked", "tell a joke", "y", "end", speed=100,
@@ -93,7 +93,7 @@ def test_staff_pause_stop_go_on_take_over_and_end(workspace: Workspace) -> None:
         assert words in text
 
 
-def test_a_fault_is_seen_and_cleared_by_lines(workspace: Workspace) -> None:
+def test_a_fault_is_acknowledged_and_cleared_by_lines(workspace: Workspace) -> None:
     written, ended = told(
         workspace, "wait until halted", "what", "clear", "seen", "expert", "clear",
         inject=("laser-disconnected@2",),
@@ -103,7 +103,7 @@ def test_a_fault_is_seen_and_cleared_by_lines(workspace: Workspace) -> None:
     assert "Laser scanner silent" in text and "The game is over" in text
 
 
-def test_what_is_no_command_is_said_with_the_nearest_and_help(workspace: Workspace) -> None:
+def test_an_unknown_command_is_reported_with_the_nearest_one(workspace: Workspace) -> None:
     written, _ = told(
         workspace, "pause", "pasue", "qwertz", "ask for Nobody", "help", "why", "faults",
         "# a remark", "", "end",
@@ -130,7 +130,7 @@ def test_a_log_that_cannot_be_written_pauses_the_game(
     assert "The disk is full." in written and ended
 
 
-def test_a_stop_is_read_while_an_answer_is_still_carried_out(
+def test_a_stop_is_read_during_the_execution_of_an_answer(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     answer, seen = GameController.answer, list[bool]()
@@ -152,7 +152,7 @@ def test_a_stop_is_read_while_an_answer_is_still_carried_out(
     assert seen == [True]
 
 
-def test_by_turns_a_line_is_read_only_where_tangy_waits(workspace: Workspace) -> None:
+def test_a_scripted_line_is_read_only_when_tangy_waits(workspace: Workspace) -> None:
     learnt, _ = load_policy(workspace.store, workspace.activity)
     game = workspace.supervision(learnt, 4, asks=True, injections=("laser-disconnected@2",))
     written = play_by_turns(game, "pause", "go on", "seen", "expert", "clear", "end")
@@ -161,7 +161,7 @@ def test_by_turns_a_line_is_read_only_where_tangy_waits(workspace: Workspace) ->
     assert any("The game is over" in line for line in written), "the rest was not asked for"
 
 
-def test_after_a_stop_no_game_begins_before_staff_let_it_go_on(workspace: Workspace) -> None:
+def test_no_game_begins_after_a_stop_without_a_release(workspace: Workspace) -> None:
     learnt, _ = load_policy(workspace.store, workspace.activity)
     control = GameController(workspace.supervision(learnt, 4, asks=True), "Ada")
     control.apply(StopRobot())
@@ -170,13 +170,13 @@ def test_after_a_stop_no_game_begins_before_staff_let_it_go_on(workspace: Worksp
     assert control.begin() and not control.supervision.over
 
 
-def test_what_tangy_is_to_do_next_may_be_typed_before_it_asks(workspace: Workspace) -> None:
+def test_the_next_behaviour_may_be_typed_before_the_question(workspace: Workspace) -> None:
     written, ended = told(workspace, "take over", "tell a joke", "y", "end", speed=100)
     text = "\n".join(written)
     assert ended and "joke, as Ada said" in text and "I do not know" not in text
 
 
-def test_an_end_typed_ahead_comes_after_what_was_typed_before_it(
+def test_an_end_typed_ahead_is_executed_in_order(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     go_on, begun, all_read = GameController.next, threading.Event(), threading.Event()
@@ -199,7 +199,7 @@ def test_an_end_typed_ahead_comes_after_what_was_typed_before_it(
     assert ended and "joke, as Ada said" in "\n".join(written)
 
 
-def test_nothing_that_moves_the_robot_is_guessed_from_words_that_are_far_from_it(
+def test_distant_words_are_never_read_as_a_command_that_moves_the_robot(
     workspace: Workspace,
 ) -> None:
     written, _ = told(workspace, "pause", "don't stop", "end")

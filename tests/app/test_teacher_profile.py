@@ -1,4 +1,4 @@
-"""Who teaches is asked once, kept in the data folder, and used from then on."""
+"""The teacher's profile: the name is asked once, stored in the data folder, and used later."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def ask(folder: Path, *typed: str) -> tuple[str, list[str]]:
     return ask_who(folder, lambda: next(lines, None), said.append)[0], said
 
 
-def test_a_name_is_asked_once_and_kept(tmp_path: Path) -> None:
+def test_the_name_is_asked_once_and_stored(tmp_path: Path) -> None:
     name, said = ask(tmp_path, "Ada\n")
     assert name == "Ada"
     assert said
@@ -43,7 +43,7 @@ def test_enter_alone_takes_the_login_name(tmp_path: Path, monkeypatch: pytest.Mo
     assert read_profile(tmp_path).name == login_name()
 
 
-def test_without_a_login_name_a_name_has_to_be_typed(
+def test_a_name_must_be_typed_without_a_login_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("USER", raising=False)
@@ -51,30 +51,30 @@ def test_without_a_login_name_a_name_has_to_be_typed(
     assert ask(tmp_path, "\n", " \n", "Ada\n")[0] == "Ada"
 
 
-def test_a_name_that_cannot_be_kept_is_asked_again(tmp_path: Path) -> None:
+def test_an_invalid_name_is_asked_again(tmp_path: Path) -> None:
     name, said = ask(tmp_path, "x" * 500, "Bea")
     assert name == "Bea"
     assert len(said) > 2
 
 
-def test_without_an_answer_nothing_is_kept(tmp_path: Path) -> None:
+def test_no_answer_stores_no_name(tmp_path: Path) -> None:
     assert ask(tmp_path)[0] == login_name()
     assert not read_profile(tmp_path).name
 
 
-def test_a_given_name_goes_before_the_kept_one(tmp_path: Path) -> None:
+def test_a_given_name_overrides_the_stored_one(tmp_path: Path) -> None:
     save_profile(tmp_path, TeacherProfile('Zoë "Z" \\ O'))
     assert teacher_name(None, tmp_path) == 'Zoë "Z" \\ O'
     assert teacher_name("Bea", tmp_path) == "Bea"
 
 
-def test_a_file_with_a_mistake_is_told(tmp_path: Path) -> None:
+def test_a_file_with_a_mistake_is_refused(tmp_path: Path) -> None:
     (tmp_path / "teacher.toml").write_text("name = 3\n")
     with pytest.raises(TangyError):
         read_profile(tmp_path)
 
 
-def test_a_theme_is_kept_beside_the_name(tmp_path: Path) -> None:
+def test_a_theme_is_stored_beside_the_name(tmp_path: Path) -> None:
     change_theme(tmp_path, "tangy-light")
     assert change_name(tmp_path, "Ada") == "Ada"
     assert read_profile(tmp_path) == TeacherProfile("Ada", "tangy-light")

@@ -1,4 +1,4 @@
-"""Who stands between the program and the person: told by the environment and the processes."""
+"""Detecting remote sessions and multiplexers from the environment and the processes."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ def listed(folder: Path, tree: Tree) -> Path:
         ),
     ],
 )
-def test_it_is_told_where_the_person_sits(
+def test_the_session_is_detected_from_the_environment_and_processes(
     tmp_path: Path, environ: dict[str, str], tree: Tree, expected: TerminalSession
 ) -> None:
     proc = listed(tmp_path, {**SHELL, **tree})
     assert terminal_session(environ, pid=50, proc=proc) == expected
 
 
-def test_where_no_processes_are_listed_the_environment_tells(tmp_path: Path) -> None:
+def test_the_session_is_detected_from_the_environment_alone(tmp_path: Path) -> None:
     nowhere = tmp_path / "none"
     assert terminal_session({}, pid=50, proc=nowhere) == TerminalSession()
     found = terminal_session({"SSH_TTY": "x", "TMUX": "y"}, pid=50, proc=nowhere)
@@ -81,7 +81,7 @@ def test_where_no_processes_are_listed_the_environment_tells(tmp_path: Path) -> 
         ("", False),
     ],
 )
-def test_tmux_screen_and_mosh_are_known_by_their_device_attributes(
+def test_tmux_screen_and_mosh_are_detected_by_device_attributes(
     attributes: str, another: bool
 ) -> None:
     assert answers_for_another(attributes) is another

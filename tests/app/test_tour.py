@@ -1,4 +1,4 @@
-"""The tour goes from stop to stop by what a new teacher does, and one real step is taught in it."""
+"""The tour: actions of the new teacher advance it from stop to stop, and teach one real step."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def begun(workspace: Workspace) -> tuple[Tour, TeachingSession]:
     return Tour(), teaching
 
 
-def test_a_command_its_question_and_its_answer_lead_on(workspace: Workspace) -> None:
+def test_a_command_its_question_and_its_answer_advance_the_tour(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     tour.go_on()
     assert (tour.at, tour.enter_goes_on) == (TourStop.COMMAND, False)
@@ -35,14 +35,14 @@ def test_a_command_its_question_and_its_answer_lead_on(workspace: Workspace) -> 
     assert tour.at is None
 
 
-def test_who_teaches_at_once_is_met_where_they_are(workspace: Workspace) -> None:
+def test_a_step_taught_at_once_skips_the_earlier_stops(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     for command in (Say(teaching.sayable[0]), Reply(yes=True)):
         tour.follow(teaching.apply(command))
     assert tour.at is TourStop.STEP
 
 
-def test_each_further_step_leads_on_like_enter(workspace: Workspace) -> None:
+def test_each_further_step_advances_the_tour_like_enter(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     for stop in (TourStop.STEP, TourStop.PEOPLE, TourStop.COACH, None, None):
         teaching.apply(Say(teaching.sayable[0]))
@@ -50,7 +50,7 @@ def test_each_further_step_leads_on_like_enter(workspace: Workspace) -> None:
         assert tour.at is stop
 
 
-def test_nothing_leads_back_into_a_tour_that_was_skipped(workspace: Workspace) -> None:
+def test_a_skipped_tour_never_resumes(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     tour.skip()
     assert not tour.follow(teaching.apply(Say(teaching.sayable[0])))
@@ -58,7 +58,7 @@ def test_nothing_leads_back_into_a_tour_that_was_skipped(workspace: Workspace) -
     assert tour.at is None
 
 
-def test_each_stop_has_its_words_in_two_lines_of_a_small_screen() -> None:
+def test_the_words_of_each_stop_fit_into_two_lines() -> None:
     for stop in TourStop:
         words = tour_words(stop, "Rosa-Maria", "Bingo", "greet everyone")
         assert len(words) < 2 * 78 - 14, stop  # breaking at spaces costs some
@@ -86,13 +86,13 @@ def test_without_visits_the_tour_sends_the_robot_to_nobody() -> None:
         assert "Send Tangy" not in told
 
 
-def test_by_lines_the_tour_teaches_one_step(workspace: Workspace) -> None:
+def test_the_tour_by_lines_teaches_one_step(workspace: Workspace) -> None:
     said = lines(workspace, "", "greet everyone", "y", "", "", "", "call number", "y")
     places = [place(said, stop) for stop in TourStop]
     assert places == sorted(places)
 
 
-def test_by_lines_a_word_skips_it(workspace: Workspace) -> None:
+def test_a_word_skips_the_tour_by_lines(workspace: Workspace) -> None:
     said = lines(workspace, "skip", "", "greet everyone", "y", "")
     told = [stop for stop in TourStop if tour_line(stop, "Ada", "Bingo", "greet everyone") in said]
     assert told == [TourStop.ROOM]

@@ -1,4 +1,4 @@
-"""Learning from a store: only finished demonstrations count, and it is told when there are none."""
+"""Learning from a store: only finished demonstrations count, and missing ones are reported."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def workspace(tmp_path: Path) -> Workspace:
     return Workspace(tmp_path)
 
 
-def test_who_learns_in_the_midst_of_a_first_game_is_told_to_finish_it(
+def test_learning_during_the_first_game_asks_to_finish_it(
     workspace: Workspace, demonstrate: Callable[..., Demonstration]
 ) -> None:
     with pytest.raises(NothingToLearnFrom, match="demonstrate a game first"):

@@ -1,4 +1,4 @@
-"""A game that is tried tells everything that people did after each step, and who said nothing."""
+"""A trial game lists all that people did after each step, and who stayed silent."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.support.declared import declared
 from tests.support.media import guess_the_sound
 
 
-def test_everything_that_a_person_did_after_a_step_is_told() -> None:
+def test_several_actions_of_a_person_after_a_step_are_listed() -> None:
     told = [
         did
         for seed in range(1, 6)
@@ -39,7 +39,7 @@ def test_the_person_of_each_step_has_a_name() -> None:
     assert all(any(name in step.situation for name in names) for step in steps)
 
 
-def test_who_says_nothing_and_is_asked_again_is_told(tmp_path: Path) -> None:
+def test_silent_people_who_are_asked_again_are_listed(tmp_path: Path) -> None:
     rarely = ('turn is yes"], chance = 0.4', 'turn is yes"], chance = 0.1')
     steps = list(tried_game(changed_trivia(tmp_path, rarely), 2, 1))
     silent = [step for step in steps if step.silent]
@@ -47,7 +47,7 @@ def test_who_says_nothing_and_is_asked_again_is_told(tmp_path: Path) -> None:
     assert SAYS_NOTHING in people_did(silent[0].doing, silent[0].silent)
 
 
-def test_what_is_shown_and_played_is_told_step_by_step_and_of_the_whole(tmp_path: Path) -> None:
+def test_pictures_and_sounds_are_listed_by_step_and_in_total(tmp_path: Path) -> None:
     file = guess_the_sound(tmp_path)
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace('picture = "{photo}"', 'picture = "{photo}"\npause = 12'))

@@ -1,4 +1,4 @@
-"""What staff type of an answer that they have not understood clearly: the person is asked again."""
+"""Unclear answers reported by staff or by speech: the person is asked again."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.hw.links import FakeLink
 from tests.support.changed import patient_trivia
 
 
-def test_the_robot_asks_again_and_after_the_cap_staff_are_asked(tmp_path: Path) -> None:
+def test_an_unclear_answer_is_asked_again_before_staff_are_asked(tmp_path: Path) -> None:
     link, activity = FakeLink(("user1", "user2")), patient_trivia(tmp_path)
     world = DeclaredLiveWorld(
         activity,
@@ -50,7 +50,7 @@ def test_the_robot_asks_again_and_after_the_cap_staff_are_asked(tmp_path: Path) 
     assert world.observe().stage == "judge"
 
 
-def test_a_voice_that_is_not_sure_is_not_judged_and_one_that_is_sure_is(tmp_path: Path) -> None:
+def test_only_a_certain_spoken_answer_is_judged(tmp_path: Path) -> None:
     link, activity = FakeLink(("user1", "user2")), patient_trivia(tmp_path)
     world = DeclaredLiveWorld(
         activity, ("user1", "user2"), cast(RobotLink, link), load_robot(), load_room(), seed=1

@@ -1,4 +1,4 @@
-"""What a user has set in the data folder counts, and a mistake is told with its place."""
+"""User settings in the data folder; mistakes are reported with their place."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from tangy_profiles.errors import ProfileError
 from tangy_tui.app.user_settings import UserSettings, read_settings
 
 
-def test_without_a_file_all_is_as_usual(tmp_path: Path) -> None:
+def test_a_missing_file_gives_the_defaults(tmp_path: Path) -> None:
     assert read_settings(tmp_path) == UserSettings(question="auto")
 
 
 @pytest.mark.parametrize("question", ["auto", "y", "digit"])
-def test_how_a_question_takes_a_yes_can_be_set(tmp_path: Path, question: str) -> None:
+def test_the_yes_key_of_questions_can_be_set(tmp_path: Path, question: str) -> None:
     (tmp_path / "settings.toml").write_text(f'question = "{question}"\n')
     assert read_settings(tmp_path).question == question
 
 
 @pytest.mark.parametrize(("wanted", "link"), [("", "fast"), ("slow", "slow"), ("x", "fast")])
-def test_the_speed_of_the_link_is_set_in_the_file_or_for_one_program(
+def test_the_speed_of_the_link_is_set_in_the_file_or_the_environment(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wanted: str, link: str
 ) -> None:
     monkeypatch.setenv("TANGY_LINK", wanted)
@@ -38,7 +38,7 @@ def test_the_speed_of_the_link_is_set_in_the_file_or_for_one_program(
         ("question", "is not TOML"),
     ],
 )
-def test_a_mistake_is_told_with_its_place(tmp_path: Path, written: str, told: str) -> None:
+def test_a_mistake_is_reported_with_its_place(tmp_path: Path, written: str, told: str) -> None:
     (tmp_path / "settings.toml").write_text(written)
     with pytest.raises(ProfileError, match=told):
         read_settings(tmp_path)
