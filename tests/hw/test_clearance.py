@@ -84,6 +84,15 @@ class TestPeople:
         speeds = [past(Twist(0.5, 0.0), replace(slow, pace=pace)).forward for pace in paces]
         assert speeds == sorted(speeds, reverse=True) and speeds[0] > speeds[-1] > 0
 
+    def test_a_walker_may_come_so_much_faster_than_it_walked(self) -> None:
+        away = person(1.2, 0.0, 0.3)
+        told = replace(LIMITS, approach_turned=0.3 + LIMITS.turned_faster, turned_faster=inf)
+        near = NearbyPeople((away,), np.zeros((0, 2)))
+        limited = [limit_near_people(Twist(0.5, 0.0), near, one) for one in (LIMITS, told)]
+        assert limited[0] == limited[1]
+        assert 0 < limited[0].forward < past(Twist(0.5, 0.0), replace(away, pace=0.0)).forward
+        assert LIMITS.turned_faster >= 0.6  # with less, robots were touched by people who turned
+
     def test_the_robot_stops_for_a_person_crossing_its_path(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
 

@@ -121,6 +121,21 @@ class TestFinding:
         assert off < 0.15 and robot.heading_off(estimate) < 0.1
         assert estimate.settled and estimate.spread < 0.3
 
+    @pytest.mark.parametrize(("apart", "fewest", "most"), [(3, 13, 40), (40, 4, 8)])
+    def test_a_place_is_believed_after_many_scans_or_after_a_few_that_lie_metres_apart(
+        self, apart: int, fewest: int, most: int
+    ) -> None:
+        robot = Driven(2, start=None)
+        scans, settled = 0, False
+        for number, twist in enumerate(ROUND):
+            robot.true = driven(robot.true, twist, 0.1)
+            counted = robot.wheels.turn(twist, 0.1)
+            if number % apart == 0 and not settled:
+                scan = look(robot.sides, robot.true, robot.rng)
+                settled = robot.localisation.update(counted, scan).settled
+                scans += 1
+        assert settled and fewest <= scans <= most
+
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [20, 21])
     def test_a_kidnapped_robot_reports_it_and_localises_again(self, seed: int) -> None:

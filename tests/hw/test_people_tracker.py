@@ -164,6 +164,9 @@ class TestTracks:
         watching.watch(2.4)
         _, track = nearest(watching.tracker.tracks, person)
         assert track.speed < 0.7 and track.pace > 0.9
+        watching.watch(3.0)
+        _, track = nearest(watching.tracker.tracks, person)
+        assert track.pace < 0.8  # not for ever
 
     def test_a_person_who_left_is_forgotten(self) -> None:
         person = Person(5.2, 2.6, 0.4)
