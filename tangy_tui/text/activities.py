@@ -84,7 +84,7 @@ def _fact_words(fact: Fact) -> str:
 SELECTORS: dict[str, str] = {
     "first asking": "the person who asked first",
     "whose turn": "the person whose turn it is",
-    "next in circle": "the next in the circle",
+    "next in circle": "the person who sits next",
     "quietest": "the person who has done least so far",
     "last to act": "the person who did something last",
     "addressed": "the person spoken to last",

@@ -87,3 +87,20 @@ def test_people_on_the_bench_learn_from_the_robot_whose_turn_it_is(
         assert heard is not None
         people.hear(heard)
         assert people.known.whom("whose turn") == whose
+
+
+def test_the_circle_goes_by_the_seats_whatever_the_lot_drew(raffle: DeclaredActivity) -> None:
+    games = (world(raffle, seed).game for seed in range(20))
+    game = next(one for one in games if one.players == ("user3", "user1", "user2"))
+    assert game.circle == PLAYERS
+    found = []
+    for spoken_to in (None, *PLAYERS):
+        game.addressed = spoken_to
+        found.append(game.whom("next in circle"))
+    assert found == ["user1", "user2", "user3", "user1"]
+    again = game_from(raffle.declaration, PLAYERS, memory_of(game))
+    assert again is not None
+    assert (again.players, again.circle) == (game.players, PLAYERS)
+    game.here = ("user3", "user1")
+    game.addressed = "user1"
+    assert game.whom("next in circle") == "user3"

@@ -40,7 +40,11 @@ class DeclaredGame:
     """The state of one game of a declared activity."""
 
     def __init__(
-        self, declaration: Declaration, players: Sequence[str], order: Sequence[int] = ()
+        self,
+        declaration: Declaration,
+        players: Sequence[str],
+        order: Sequence[int] = (),
+        circle: Sequence[str] = (),
     ) -> None:
         """Begin a game.
 
@@ -48,9 +52,11 @@ class DeclaredGame:
             declaration: the activity.
             players: those who take turns: people, or teams.
             order: the order of the items, as row numbers (default: as in the file).
+            circle: the players as they sit (default: in the order of their turns).
         """
         self.declaration = declaration
         self.players = tuple(players)
+        self.circle = tuple(circle) or self.players
         self.order = tuple(order) or tuple(range(declaration.items.rounds))
         self.values: dict[Key, str] = {}
         self.counts: dict[Key, float] = {}
@@ -173,8 +179,9 @@ class DeclaredGame:
             case "whose turn":
                 return self.players[self.turn]
             case "next in circle":
-                last = -1 if self.addressed is None else self.players.index(self.addressed)
-                return self.players[self._next_here(last)]
+                last = -1 if self.addressed is None else self.circle.index(self.addressed)
+                after = (*self.circle[last + 1 :], *self.circle[: last + 1])
+                return next(one for one in after if one in self.here)
             case "quietest":
                 return min(self.here, key=lambda one: self.acts[one])
             case "last to act":

@@ -16,7 +16,7 @@ T = TypeVar("T")
 def drawn_game(declaration: Declaration, players: Sequence[str], uniform: Draw) -> DeclaredGame:
     """Begin a game, in which the rows of the items and the turns are drawn."""
     rows = rows_of(declaration, uniform)
-    return DeclaredGame(declaration, turns_of(declaration, players, uniform), rows)
+    return DeclaredGame(declaration, turns_of(declaration, players, uniform), rows, players)
 
 
 def rows_of(declaration: Declaration, uniform: Draw) -> list[int]:

@@ -45,6 +45,8 @@ class GameMemory:
     screen: Sparse[tuple[str, ...]] = ()
     """The behaviour whose text or picture is on the screen, its person ("": the group), and whose
     turn it was."""
+    circle: Sparse[tuple[str, ...]] = ()
+    """The players as they sit, if their turns have another order."""
 
 
 def memory_of(game: DeclaredGame) -> GameMemory:
@@ -66,6 +68,7 @@ def memory_of(game: DeclaredGame) -> GameMemory:
         executed=tuple(sorted(game.executed.items())),
         away=tuple(one for one in game.players if one not in game.here),
         screen=tuple(part or "" for part in game.screen or ()),
+        circle=() if game.circle == game.players else game.circle,
     )
 
 
@@ -78,7 +81,7 @@ def game_from(
     from tangy_profiles.declared.game import DeclaredGame
 
     players = tuple(who for who, _ in memory.acts)  # in the order of their turns
-    game = DeclaredGame(declaration, players, memory.order)
+    game = DeclaredGame(declaration, players, memory.order, memory.circle)
     game.values = {(fact, whose): value for fact, whose, value in memory.values}
     game.counts = {(fact, whose): number for fact, whose, number in memory.counts}
     game.round, game.turn = memory.round, memory.turn
@@ -102,6 +105,7 @@ def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory
         {who for who, _ in memory.acts} == set(players) >= named
         and memory.place in {FRONT, *players}
         and bool(set(players) - set(memory.away))
+        and (not memory.circle or sorted(memory.circle) == sorted(players))
         and memory.turn < len(players)
         and memory.round <= len(memory.order)
         and len(memory.order) == declaration.items.rounds
