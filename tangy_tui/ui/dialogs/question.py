@@ -266,7 +266,6 @@ class QuestionDialog(VerifyingDialog):
     def _content(self) -> Content:
         parts: Parts = [
             DID_YOU_SAY,
-            NUMBER_OR_NONE,
             (self._behaviour, "$accent bold"),
             "?",
             *self._grounds(),
