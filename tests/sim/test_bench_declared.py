@@ -1,4 +1,4 @@
-"""The bench's people follow a game that is declared by facts by what the robot says."""
+"""The bench's people follow a game declared by facts from the robot's speech."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NAMES = {person.id: person.name for person in PEOPLE}
 
 @pytest.mark.parametrize("name", DECLARED)
 @pytest.mark.parametrize("seed", range(3))
-def test_people_understand_every_sentence_and_which_item_it_is_about(name: str, seed: int) -> None:
+def test_people_understand_every_sentence_and_its_item(name: str, seed: int) -> None:
     activity = declared(name)
     world = DeclaredWorld(activity, tuple(NAMES), seed=seed)
     ears = DeclaredReception(activity, PEOPLE)
@@ -70,7 +70,7 @@ def test_people_hold_up_the_letter_of_their_answer_until_the_next_sentence() -> 
     assert up > 100
 
 
-def test_people_act_only_where_the_game_gives_them_reason_to(tmp_path: Path) -> None:
+def test_people_act_only_if_the_game_gives_them_a_reason(tmp_path: Path) -> None:
     by_voice = ('from = ["sign", "speech", "button"]', 'from = ["speech"]')
     activity = changed_trivia(tmp_path, by_voice)
     people = DeclaredPeople(activity, PEOPLE, Faults(), seed=1)

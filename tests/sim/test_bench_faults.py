@@ -1,4 +1,4 @@
-"""What goes wrong on the bench goes wrong in its devices and people, and is put right again."""
+"""Faults on the bench: injected into its devices and people, and mended."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def ask_aloud(world: BenchWorld, code: str, name: str = "") -> None:
 
 class TestAnyKind:
     @pytest.mark.parametrize("kind", KINDS)
-    def test_it_comes_is_told_and_is_mended_by_the_right_diagnosis(self, kind: str) -> None:
+    def test_only_the_right_diagnosis_mends_an_injected_fault(self, kind: str) -> None:
         world = opened()
         world.inject(kind)
         (told,) = world.truth()["faults"]
@@ -52,7 +52,7 @@ class TestAnyKind:
         assert not world.truth()["faults"] and not world.floor.dropped
 
     @pytest.mark.parametrize("kind", KINDS)
-    def test_the_next_game_begins_without_it(self, kind: str) -> None:
+    def test_the_next_game_begins_without_injected_faults(self, kind: str) -> None:
         world = opened()
         world.inject(kind)
         world.begin()
@@ -66,7 +66,7 @@ class TestAnyKind:
             ("laser-occluded", "laser-disconnected", "link-lost"),
         ],
     )
-    def test_an_expert_finds_what_silences_the_device_as_well(
+    def test_mending_a_fault_also_mends_the_silence_that_hides_it(
         self, shows: str, silences: str, elsewhere: str
     ) -> None:
         world = bench(1)
@@ -75,14 +75,14 @@ class TestAnyKind:
         assert world.mend(KINDS[shows].code) == [shows, silences]
         assert set(world.faults.present) == {elsewhere}
 
-    def test_who_restores_the_link_repairs_no_device(self) -> None:
+    def test_restoring_the_link_repairs_no_device(self) -> None:
         world = bench(1)
         for kind in ("link-lost", "requests-silent"):
             world.inject(kind)
         assert world.mend("link-lost") == ["link-lost"]
         assert set(world.faults.present) == {"requests-silent"}
 
-    def test_neither_voice_nor_screen_is_mended_as_one(self) -> None:
+    def test_mending_a_mute_robot_mends_voice_and_screen(self) -> None:
         world = opened()
         world.inject("voice-dead")
         world.inject("screen-dead")
@@ -93,7 +93,7 @@ class TestAnyKind:
             bench().inject("rain")
 
     @pytest.mark.parametrize("kind", ["camera-occluded", "laser-occluded", "path-blocked"])
-    def test_mostly_somebody_helps_who_is_asked_aloud(self, kind: str) -> None:
+    def test_people_usually_help_when_asked_aloud(self, kind: str) -> None:
         helped = 0
         world = opened()
         for _ in range(40):
@@ -106,14 +106,14 @@ class TestAnyKind:
 
 class TestDriving:
     @pytest.mark.parametrize("kind", ["emergency-stop", "base-failed", "base-stuck"])
-    def test_the_robot_stands_until_it_is_mended(self, kind: str) -> None:
+    def test_a_base_fault_stops_the_robot_until_it_is_mended(self, kind: str) -> None:
         world = opened()
         world.inject(kind)
         assert not drive_to(world, "user1", 5.0) and world.people.place == FRONT
         world.mend(KINDS[kind].code)
         assert drive_to(world, "user1")
 
-    def test_an_emergency_stop_ends_what_it_is_driving(self) -> None:
+    def test_an_emergency_stop_ends_the_drive(self) -> None:
         world = opened()
         for _ in range(20):
             world.drive(0.5, 0.0)
@@ -124,7 +124,7 @@ class TestDriving:
         world.step(0.5)
         assert world.wheels.pose == there and world.wheels.forward == 0.0
 
-    def test_on_a_rug_the_wheels_turn_and_the_robot_does_not_go_along(self) -> None:
+    def test_slipping_wheels_turn_without_moving_the_robot(self) -> None:
         world = opened()
         there = world.wheels.pose
         world.inject("wheels-slip")
@@ -134,7 +134,7 @@ class TestDriving:
         gone = hypot(world.wheels.pose.x - there.x, world.wheels.pose.y - there.y)
         assert gone < 0.15 and world.wheels.odometry.x > 1.0
 
-    def test_chairs_block_every_way_out(self) -> None:
+    def test_chairs_block_every_path(self) -> None:
         world = opened()
         start = world.wheels.pose
         world.inject("path-blocked")
@@ -148,7 +148,7 @@ class TestDriving:
         world.lift("path-blocked")
         assert not world.floor.dropped
 
-    def test_a_chair_comes_into_the_way_of_a_robot_that_drives_and_leaves_a_way_round(self) -> None:
+    def test_a_detour_fault_puts_a_chair_into_the_path_of_a_moving_robot(self) -> None:
         world = opened()
         world.inject("path-detour")
         world.step(5.0)
@@ -161,7 +161,7 @@ class TestDriving:
         world.lift("path-detour")
         assert drive_to(world, "user2")
 
-    def test_a_robot_that_is_carried_off_is_elsewhere_and_its_wheels_do_not_know(self) -> None:
+    def test_a_kidnapped_robot_moves_without_a_change_of_odometry(self) -> None:
         for seed in range(8):
             world = bench(seed)
             there, counted = world.wheels.pose, world.wheels.odometry
@@ -176,7 +176,7 @@ class TestDriving:
 
 
 class TestSensing:
-    def test_a_covered_laser_sees_what_covers_it(self) -> None:
+    def test_a_covered_laser_sees_its_cover(self) -> None:
         world = opened()
         world.inject("laser-occluded")
         assert (world.ranges() < 0.15).mean() > 0.6
@@ -185,13 +185,13 @@ class TestSensing:
 
     @pytest.mark.parametrize(("kind", "scene"), [("camera-occluded", "dark"),
                                                  ("camera-frozen", "frozen")])  # fmt: skip
-    def test_a_camera_sees_otherwise(self, kind: str, scene: str) -> None:
+    def test_a_camera_fault_changes_the_scene(self, kind: str, scene: str) -> None:
         world = opened()
         assert world.head_scene().kind == "room"
         world.inject(kind)
         assert world.head_scene().kind == scene
 
-    def test_a_broken_arm_leaves_the_head(self) -> None:
+    def test_a_broken_arm_does_not_stop_the_head(self) -> None:
         world = opened()
         world.inject("arm-failed")
         world.joints.move(["left_arm/elbow", "head/neck nod"], [1.0, -0.3], 0.5)
@@ -201,7 +201,7 @@ class TestSensing:
 
 
 class TestPeople:
-    def test_a_card_is_out_of_sight_until_its_owner_is_helped(self) -> None:
+    def test_a_card_stays_out_of_sight_until_its_owner_is_asked(self) -> None:
         world = opened()
         asks(world, "user2")
         world.people.sitters["user2"].hides = ""
@@ -214,7 +214,7 @@ class TestPeople:
             ask_aloud(world, "card-out-of-sight", "User 2")
         assert "card-out-of-sight" not in world.faults
 
-    def test_a_sign_stays_up_until_it_is_asked_to_be_turned_down(self) -> None:
+    def test_a_stuck_sign_stays_up_until_the_robot_asks(self) -> None:
         world = opened()
         world.inject("request-stuck")
         asks(world, "user3")
@@ -225,7 +225,7 @@ class TestPeople:
             ask_aloud(world, "request-stuck", "User 3")
         assert "request-stuck" not in world.faults
 
-    def test_one_of_those_who_wait_asks_no_more_and_never_the_one_the_robot_is_with(self) -> None:
+    def test_a_withdrawn_request_is_never_that_of_the_visited_person(self) -> None:
         world = opened()
         world.inject("request-withdrawn")
         asks(world, "user3")
@@ -235,7 +235,7 @@ class TestPeople:
         world.step(1.0)
         assert world.asking == ("user3",) and "request-withdrawn" not in world.faults
 
-    def test_somebody_follows_nothing_and_at_last_takes_the_sign_down(self) -> None:
+    def test_a_person_who_never_complies_finally_takes_the_sign_down(self) -> None:
         world = opened()
         world.inject("never-complies")
         asks(world, "user4", marked=0b11)
@@ -247,7 +247,7 @@ class TestPeople:
         assert player.marked == 0b11 and not world.asking
         assert [r.followed for r in world.people.game.responses] == [False] * 3
 
-    def test_what_was_asked_for_is_done_once_and_comes_to_nothing(self) -> None:
+    def test_a_correction_without_effect_is_undone_once(self) -> None:
         world = opened()
         world.inject("no-effect")
         asks(world, "user4", marked=0b11)
@@ -262,7 +262,7 @@ class TestPeople:
         world.step(25.0)
         assert player.marked == 0
 
-    def test_what_comes_to_nothing_completes_no_line(self) -> None:
+    def test_a_correction_without_effect_completes_no_line(self) -> None:
         world = opened()
         world.inject("no-effect")
         deck = ACTIVITY.deck
@@ -277,7 +277,7 @@ class TestPeople:
         assert world.people.judged("user4") == "missing numbers"
         assert "no-effect" not in world.faults
 
-    def test_what_cannot_come_to_nothing_waits_for_another_time(self) -> None:
+    def test_an_impossible_no_effect_fault_stays_pending(self) -> None:
         world = opened()
         world.inject("no-effect")
         asks(world, "user4", called=0b1, marked=0)
@@ -287,7 +287,7 @@ class TestPeople:
         assert player.marked == 0b1 and "no-effect" in world.faults
 
     @pytest.mark.slow
-    def test_a_dead_voice_is_not_heard_and_may_come_back_when_switched_on_again(self) -> None:
+    def test_a_dead_voice_is_silent_and_may_recover_by_a_restart(self) -> None:
         came = Counter[bool]()
         for seed in range(30):
             world = bench(seed)
@@ -298,7 +298,7 @@ class TestPeople:
             came[world.restart("voice")] += 1
         assert 6 <= came[True] <= 24
 
-    def test_people_say_that_they_would_like_help_once_signs_cannot_be_seen(self) -> None:
+    def test_people_ask_aloud_for_help_while_signs_cannot_be_seen(self) -> None:
         world = opened()
         world.people.sitters["user1"].asks_since = world.now
         world.inject("requests-silent")

@@ -31,7 +31,7 @@ def wheels(odometer: Odometer = EXACT, pose: FloorPose = AHEAD, seed: int = 2) -
 class TestRays:
     @settings(max_examples=30)
     @given(st.floats(0.1, 9.9), st.floats(0.1, 7.9), angles)
-    def test_in_an_empty_room_a_ray_ends_at_the_wall_it_points_to(
+    def test_a_ray_in_an_empty_room_ends_at_the_wall(
         self, x: float, y: float, angle: float
     ) -> None:
         (far,) = cast(x, y, np.array([angle]), floor().walls, EMPTY)
@@ -43,7 +43,7 @@ class TestRays:
 
     @settings(max_examples=30)
     @given(angles, st.floats(0.5, 4), st.floats(0.02, 0.3), st.floats(-1.2, 1.2))
-    def test_a_round_thing_is_hit_where_it_is_and_missed_where_it_is_not(
+    def test_a_ray_hits_a_circle_only_on_its_line(
         self, way: float, far: float, radius: float, aside: float
     ) -> None:
         # `aside` is how far the ray passes its middle, in its radii.
@@ -57,13 +57,13 @@ class TestRays:
         elif abs(aside) > 1.001:
             assert met == inf
 
-    def test_the_laser_sees_legs_below_the_table_and_no_table_top(self) -> None:
+    def test_the_laser_sees_legs_but_no_table_top(self) -> None:
         seen = Lidar(noise=0.0).scan(FloorPose(4.6, 4.0, pi / 2), floor(), np.random.default_rng(1))
         ahead = seen[150:211]  # 45 degrees to each side
         assert 1.5 < ahead.min() < 2.6  # people's legs, beyond the edge 1 m away
         assert (ahead > 2.6).any()  # and the wall between them
 
-    def test_noise_is_a_centimetre_and_every_scan_has_its_own(self) -> None:
+    def test_each_scan_has_its_own_noise_of_a_centimetre(self) -> None:
         lidar, random, room = Lidar(), np.random.default_rng(3), floor()
         scans = np.array([lidar.scan(AHEAD, room, random) for _ in range(50)])
         assert np.median(scans.std(0)) == pytest.approx(0.01, rel=0.2)
@@ -78,7 +78,7 @@ class TestRays:
         moved = np.hypot(*(room.circles - before)[:, :2].T)
         assert 0 < (moved > 0).sum() <= 8 and moved.max() < 0.3
 
-    def test_a_cloth_over_the_laser_is_seen_by_most_beams(self) -> None:
+    def test_most_beams_end_at_a_cloth_over_the_laser(self) -> None:
         seen = Lidar().covered(AHEAD, floor(), np.random.default_rng(4))
         assert (seen < 0.15).mean() > 0.6
 
@@ -86,7 +86,7 @@ class TestRays:
 class TestWheels:
     @settings(max_examples=30)
     @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-2, 2)), min_size=1, max_size=8))
-    def test_wheels_that_count_exactly_know_where_they_are(
+    def test_noiseless_odometry_equals_the_true_pose(
         self, commands: list[tuple[float, float]]
     ) -> None:
         one = wheels()
@@ -104,7 +104,7 @@ class TestWheels:
         assert abs((off + pi) % (2 * pi) - pi) < 1e-9
 
     @given(st.floats(0.05, 0.5), st.floats(-1, 1))
-    def test_without_commands_it_stands_after_half_a_second_and_braking(
+    def test_the_base_stops_half_a_second_after_the_last_command(
         self, forward: float, turn: float
     ) -> None:
         one = wheels()
@@ -121,7 +121,7 @@ class TestWheels:
         one.step(now + 1, 1.0)
         assert one.forward == one.turn == 0.0 and one.pose == there
 
-    def test_it_speeds_up_and_turns_no_faster_than_it_can(self) -> None:
+    def test_the_base_keeps_its_limits_of_speed_and_acceleration(self) -> None:
         one = wheels()
         one.drive(5.0, 9.0, 0.0)
         speeds = []
@@ -138,7 +138,7 @@ class TestWheels:
     @pytest.mark.slow
     @settings(max_examples=30)
     @given(angles, st.integers(0, 99))
-    def test_it_never_gets_into_walls_the_table_or_legs(self, heading: float, seed: int) -> None:
+    def test_the_base_never_enters_walls_the_table_or_legs(self, heading: float, seed: int) -> None:
         one = wheels(Odometer(), AHEAD._replace(heading=heading), seed)
         for tick in range(1, 200):
             one.drive(1.0, 0.0, tick * 0.05)
@@ -150,7 +150,7 @@ class TestWheels:
             one.step(tick * 0.05, 0.05)
         assert one.forward < 0
 
-    def test_stuck_wheels_turn_nothing_and_slipping_ones_count_what_is_not_gone(self) -> None:
+    def test_stuck_wheels_count_nothing_and_slipping_wheels_count_motion(self) -> None:
         stuck, slips = wheels(), wheels()
         for tick in range(1, 41):
             for one in (stuck, slips):
@@ -160,7 +160,7 @@ class TestWheels:
         assert stuck.pose == AHEAD and stuck.odometry == FloorPose(0, 0, 0)
         assert slips.pose == AHEAD and slips.odometry.x > 0.6
 
-    def test_wheels_count_a_little_wrong_each_time_otherwise(self) -> None:
+    def test_odometry_errors_are_small_and_vary_by_seed(self) -> None:
         wrong = []
         for seed in range(12):
             one = wheels(Odometer(), FloorPose(1.0, 2.5, 0.0), seed)
@@ -173,7 +173,7 @@ class TestWheels:
 
 class TestJoints:
     @given(st.floats(-35, 30), st.floats(0.0, 3.0))
-    def test_a_joint_is_at_its_goal_in_the_time_it_was_given_or_can(
+    def test_a_joint_reaches_its_goal_in_the_given_or_minimum_time(
         self, degrees: float, seconds: float
     ) -> None:
         joints = Joints(ROBOT)
@@ -184,7 +184,7 @@ class TestJoints:
         joints.step(takes * 0.5 + 1e-3)
         assert joints.angle("head/neck nod") == pytest.approx(degrees)
 
-    def test_goals_end_at_a_joints_limit_and_broken_limbs_stay(self) -> None:
+    def test_joints_stop_at_their_limits_and_broken_limbs_stay(self) -> None:
         joints = Joints(ROBOT)
         joints.move(["head/neck nod", "left_arm/elbow"], [-3.0, 1.0], 0.5)
         joints.step(5.0, broken=("left_arm",))

@@ -1,4 +1,4 @@
-"""The bench's people understand the robot's words, and play as the simulated ones do."""
+"""The bench's people understand the robot's speech, and play like the simulated people."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def asks(world: BenchWorld, person: str = "user2") -> None:
 class TestHearing:
     @pytest.mark.parametrize(("behaviour", "strategy"), WAYS)
     @pytest.mark.parametrize("person", PEOPLE, ids=lambda person: person.id)
-    def test_all_that_the_robot_may_say_is_understood(
+    def test_people_understand_every_phrase_of_the_robot(
         self, behaviour: str, strategy: str, person: Person
     ) -> None:
         template = ACTIVITY.behaviours[behaviour].speech[strategy]
@@ -57,16 +57,14 @@ class TestHearing:
         assert heard.numbers == (numbers if asked else ())
 
     @pytest.mark.parametrize(("behaviour", "strategy"), WAYS)
-    def test_people_answer_to_their_seats_as_the_screen_names_them(
-        self, behaviour: str, strategy: str
-    ) -> None:
+    def test_people_answer_to_the_names_of_their_seats(self, behaviour: str, strategy: str) -> None:
         template = ACTIVITY.behaviours[behaviour].speech[strategy]
         numbers = (7,) if "{call}" in template else (71, 5)
         heard = HEARING.hear(ACTIVITY.fill(template, "Seat 2", numbers))
         assert heard is not None
         assert heard.person == (PEOPLE[1].id if "{name}" in template else "")
 
-    def test_calls_for_help_are_understood_and_whom_they_are_about(self) -> None:
+    def test_people_understand_requests_for_help_and_their_addressee(self) -> None:
         rules = [rule for rule in load_faults(ROBOT).rules if rule.aloud]
         assert rules
         for rule in rules:
@@ -75,10 +73,10 @@ class TestHearing:
             assert heard.person == ("ann" if "{name}" in rule.aloud else "")
 
     @given(st.text(max_size=60))
-    def test_anything_else_is_not(self, text: str) -> None:
+    def test_other_sentences_are_not_understood(self, text: str) -> None:
         assert HEARING.hear(f"{text} perhaps") is None
 
-    def test_speaking_takes_its_time(self) -> None:
+    def test_a_sentence_takes_its_speaking_time(self) -> None:
         world = bench()
         text = "Hello, everybody. I am Tangy, and today we play Bingo."
         world.say(text)
@@ -87,7 +85,7 @@ class TestHearing:
         world.step(0.2)
         assert world.said == [text] and world.people.game.opened
 
-    def test_half_a_sentence_is_not_heard(self) -> None:
+    def test_an_interrupted_sentence_is_not_heard(self) -> None:
         world = bench()
         world.say("Hello, everybody. I am Tangy, and today we play Bingo.")
         world.step(1.0)
@@ -97,7 +95,7 @@ class TestHearing:
 
 
 class TestPlaying:
-    def test_cards_are_printed_ones_and_others_in_each_game(self) -> None:
+    def test_each_game_deals_different_printed_cards(self) -> None:
         world = bench(5)
         first, second = world.begin(), world.begin()
         assert len(set(first.values())) == 4 and first != second
@@ -105,7 +103,7 @@ class TestPlaying:
             numbers = world.people.sitters[person].player.numbers
             assert numbers == numbers_of(ACTIVITY.deck, card)
 
-    def test_called_numbers_are_marked_some_seconds_after_or_missed(self) -> None:
+    def test_called_numbers_are_marked_after_some_seconds_or_missed(self) -> None:
         world = opened(3)
         for number in ACTIVITY.deck.numbers[:40]:
             say(world, "call number", "", number)
@@ -119,7 +117,7 @@ class TestPlaying:
         missed = sum((p.called & ~p.marked).bit_count() for p in players)
         assert 0 < missed < 0.3 * sum(p.called.bit_count() for p in players)
 
-    def test_a_full_line_asks(self) -> None:
+    def test_a_person_with_a_full_line_asks(self) -> None:
         world = opened(1)
         sitter = world.people.sitters["user3"]
         line = ACTIVITY.deck.lines[0]
@@ -131,7 +129,7 @@ class TestPlaying:
         world.step(3.0)
         assert "user3" in world.asking and world.people.judged("user3") == "bingo"
 
-    def test_nobody_asks_before_the_game_is_opened(self) -> None:
+    def test_nobody_asks_before_the_greeting(self) -> None:
         world = bench(2)
         world.begin()
         for number in ACTIVITY.deck.numbers[:10]:
@@ -141,7 +139,7 @@ class TestPlaying:
             sitter.player.asks_at = 0.0
         assert not world.asking
 
-    def test_whoever_is_helped_takes_the_sign_down(self) -> None:
+    def test_a_person_takes_the_sign_down_after_help(self) -> None:
         world = opened(4)
         asks(world)
         say(world, "encourage", "User 2")
@@ -149,7 +147,7 @@ class TestPlaying:
         world.step(25.0)
         assert "user2" not in world.asking
 
-    def test_corrections_are_done_as_asked_and_close_only_a_card_that_is_right(self) -> None:
+    def test_a_request_closes_only_after_the_card_is_correct(self) -> None:
         world = opened(4)
         player = world.people.sitters["user2"].player
         player.marked, player.called = 0b0011, 0b0110
@@ -161,7 +159,7 @@ class TestPlaying:
         world.step(25.0)
         assert player.marked == 0b0110 and "user2" not in world.asking
 
-    def test_people_comply_as_they_prefer_within_the_window_or_after_it(self) -> None:
+    def test_people_comply_by_their_preferences_in_time_or_late(self) -> None:
         world = opened(6)
         asks(world, "user1")
         done = Counter[bool]()
@@ -186,7 +184,7 @@ class TestPlaying:
             world.people.preferences["user1"]["neutral"], abs=0.15
         )
 
-    def test_a_card_is_out_of_view_on_arrival_as_often_as_it_should(self) -> None:
+    def test_a_card_is_out_of_view_on_arrival_at_the_given_rate(self) -> None:
         world = bench(7)
         world.begin()
         hidden = Counter[str]()
@@ -197,7 +195,7 @@ class TestPlaying:
         assert 1 - hidden[""] / 300 == pytest.approx(world.people.users.occluded, abs=0.08)
         assert set(hidden) == {"", *HIDES}
 
-    def test_the_robots_place_is_where_it_stands_and_not_where_it_passes(self) -> None:
+    def test_the_robot_is_at_a_place_only_if_it_stands_there(self) -> None:
         world = bench(8)
         world.begin()
         assert world.people.place == FRONT and drive_to(world, "user1")
@@ -215,7 +213,7 @@ class TestPlaying:
     @pytest.mark.slow
     @settings(max_examples=3)
     @given(st.integers(0, 10_000))
-    def test_the_same_seed_plays_the_same_games_and_another_one_others(self, seed: int) -> None:
+    def test_games_are_determined_by_their_seed(self, seed: int) -> None:
         def played(seed: int) -> object:
             one = Player(bench(seed, exact=False))
             one.play(9, most=15)
@@ -225,7 +223,7 @@ class TestPlaying:
         assert played(seed) != played(seed + 1)
 
     @pytest.mark.slow
-    def test_games_are_as_in_table_two(self) -> None:
+    def test_the_frequencies_of_situations_match_table_two(self) -> None:
         """The fitted model's figures for twenty games; tests/sim/test_table_two.py has them."""
         games = 6
         one = Player(bench(11))
@@ -244,7 +242,7 @@ class TestPlaying:
             assert rows[behaviour] == pytest.approx(usual, abs=4 * usual**0.5 + 2), behaviour
 
 
-def test_people_who_hear_that_there_are_more_numbers_read_them_on_the_screen() -> None:
+def test_people_read_further_numbers_on_the_chest_screen() -> None:
     behaviour = ACTIVITY.behaviours["mark numbers"]
     numbers = tuple(ACTIVITY.deck.numbers[:12])
     for template in behaviour.speech.values():

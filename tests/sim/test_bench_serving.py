@@ -1,4 +1,4 @@
-"""The bench as a process and on its wires: the drivers of the hardware floor are its peers."""
+"""The bench as a process and over its links, tested with the real drivers."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator", "--activity",
 
 
 class Peer:
-    """A robot's drivers at a bench whose time goes in steps."""
+    """A robot's drivers at a bench with stepped time."""
 
     def __init__(self, bench: DeviceServers, wires: dict[str, Any]) -> None:
         self.bench, self.world, self.wires = bench, bench.world, wires
@@ -119,7 +119,7 @@ async def played() -> AsyncIterator[Peer]:
 
 
 class TestSteppedTime:
-    async def test_time_passes_when_it_is_asked_for_and_all_that_is_due_has_come(self) -> None:
+    async def test_a_step_advances_time_and_delivers_all_due_messages(self) -> None:
         async with played() as peer:
             began, scans = peer.world.now, peer.counted()
             assert peer.base.odometry is not None
@@ -132,7 +132,7 @@ class TestSteppedTime:
             await asyncio.sleep(0.15)
             assert peer.world.now - began == pytest.approx(2.0)
 
-    async def test_a_step_that_is_none_is_refused(self) -> None:
+    async def test_an_invalid_step_is_refused(self) -> None:
         async with played() as peer:
             for seconds in (0, -1, 1e9):
                 with pytest.raises(DeviceError):
@@ -140,7 +140,7 @@ class TestSteppedTime:
 
 
 class TestDrivers:
-    async def test_the_base_drives_and_its_odometry_comes(self) -> None:
+    async def test_the_base_drives_and_sends_odometry(self) -> None:
         async with played() as peer:
             await peer.passes(1.0, Twist(0.4, 0.0))
             assert peer.base.odometry is not None
@@ -151,7 +151,7 @@ class TestDrivers:
             await peer.passes(0.6)
             assert true.forward == 0.0
 
-    async def test_the_laser_measures_what_stands_in_the_room(self) -> None:
+    async def test_the_laser_measures_the_room(self) -> None:
         async with played() as peer:
             assert peer.laser.scan is not None
             scan = peer.laser.scan.value
@@ -160,7 +160,7 @@ class TestDrivers:
             assert np.median(np.abs(scan.ranges - true)) < 0.02
             assert scan.first == pytest.approx(-0.75 * pi) and len(scan.ranges) == 360
 
-    async def test_the_head_looks_down_and_what_is_said_is_understood(self) -> None:
+    async def test_the_head_moves_and_people_understand_the_voice(self) -> None:
         async with played() as peer:
             down = {"head": [0, 0, 0, -15, -20, 0]}
             await peer.while_passing(peer.arms.pose(down, 0.5))
@@ -171,7 +171,7 @@ class TestDrivers:
             assert 3.0 < peer.world.now - began < 6.0
             assert peer.bench.do({"do": "truth"})["truth"]["opened"]
 
-    async def test_joints_stand_soon_after_they_were_told_to_hold(self) -> None:
+    async def test_joints_stop_soon_after_hold(self) -> None:
         async with played() as peer:
             joint, joints = "right_arm/shoulder pitch", peer.world.joints
             posing = asyncio.create_task(peer.arms.pose(ROBOT.postures["wave"], 1.5))
@@ -209,9 +209,7 @@ class TestFaults:
             ("link-lost", {"base", "stop_button", "laser", "link", "arms", "voice"}),
         ],
     )
-    async def test_what_is_silent_grows_stale_and_nothing_else_does(
-        self, kind: str, silent: set[str]
-    ) -> None:
+    async def test_only_the_silent_device_becomes_stale(self, kind: str, silent: set[str]) -> None:
         async with played() as peer:
             peer.bench.do({"do": "inject", "kind": kind})
             await peer.passes(1.5)
@@ -241,7 +239,7 @@ class TestFaults:
 
 class TestCameras:
     @pytest.mark.slow
-    async def test_streams_show_the_scene_of_now_and_end_with_their_cable(self) -> None:
+    async def test_streams_show_the_current_scene_until_the_camera_is_unplugged(self) -> None:
         async with served() as (one, wires):
             world = one.world
             seat = world.room.stand("user2", world.people.ids)
@@ -260,7 +258,7 @@ class TestCameras:
                         pass
             writer.close()
 
-    async def test_signs_shine_in_the_infrared_stream_until_it_is_silent(self) -> None:
+    async def test_signs_are_bright_in_the_infrared_stream(self) -> None:
         async with served() as (one, wires):
             reader, writer = await _look(wires["infrared"])
             dark = await _frame(reader)
@@ -278,7 +276,7 @@ class TestCameras:
 
 
 class TestMachineTime:
-    async def test_it_passes_by_itself(self) -> None:
+    async def test_time_passes_by_the_machine_clock(self) -> None:
         async with served(stepped=False) as (one, wires):
             passing = asyncio.create_task(one.run())
             link = Rosbridge(wires["rosbridge"])
@@ -296,7 +294,7 @@ class TestMachineTime:
 
 
 class TestBadLink:
-    async def test_drivers_are_served_through_it_and_drive_late(self) -> None:
+    async def test_drivers_work_with_delay_over_a_bad_link(self) -> None:
         async with served(stepped=False, link=LinkQuality(0.1, 0.05)) as (one, wires):
             assert wires["rosbridge"] != one.ros.url and wires["scip"] != one.scip.url
             assert wires["head"] != one.film.url("/head")
@@ -321,7 +319,7 @@ class TestBadLink:
 
 class TestProcess:
     @pytest.mark.slow
-    async def test_it_says_where_it_is_does_what_it_is_told_and_ends_with_its_stdin(self) -> None:
+    async def test_the_process_prints_its_addresses_obeys_and_ends_with_stdin(self) -> None:
         process = await asyncio.create_subprocess_exec(
             *CHILD, "--seed", "5", "--stepped", "--person", "ann=Ann", "--person", "bo",
             stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
@@ -350,7 +348,7 @@ class TestProcess:
 
     @pytest.mark.parametrize("wrong", [["--users", "40"], ["--room", "no such"],
                                        ["--person", "a=A", "--person", "a=B"]])  # fmt: skip
-    def test_what_cannot_be_played_is_one_sentence(
+    def test_an_invalid_option_is_refused_in_one_sentence(
         self, wrong: list[str], capsys: pytest.CaptureFixture[str]
     ) -> None:
         assert main([*wrong, "--activity", "bingo"]) == 2

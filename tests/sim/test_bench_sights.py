@@ -1,4 +1,4 @@
-"""What the bench's cameras show is what the hardware floor's eyes see in it."""
+"""The pictures of the bench's cameras, read by the perception of the hardware floor."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def picture(jpeg: bytes) -> Any:
 
 class TestCards:
     @pytest.mark.slow
-    def test_the_reader_reads_what_lies_there_and_is_marked(self) -> None:
+    def test_the_card_reader_reads_the_drawn_cards(self) -> None:
         reader, random, read = CardReader(ACTIVITY.deck), np.random.default_rng(7), 0
         head = camera(3)
         for visit in range(6):
@@ -53,7 +53,7 @@ class TestCards:
 
     @pytest.mark.slow
     @pytest.mark.parametrize("hides", HIDES)
-    def test_of_a_card_that_is_out_of_view_nothing_is_told(self, hides: str) -> None:
+    def test_a_card_out_of_view_is_not_read(self, hides: str) -> None:
         reader, head = CardReader(ACTIVITY.deck), camera(4)
         for visit in range(2):
             scene = HeadScene("card", PEOPLE[visit], 1, visit, 7, 0b11111, hides)
@@ -65,7 +65,7 @@ class TestCards:
             assert reader.state(reading, ACTIVITY.user_states, called) == ACTIVITY.unread
 
     @pytest.mark.slow
-    def test_a_chip_lies_where_it_lay_when_another_is_put(self) -> None:
+    def test_chips_stay_in_place_when_another_is_added(self) -> None:
         reader, head = CardReader(ACTIVITY.deck), camera(5)
         for marked in (0b1, 0b11):
             frame = picture(head.frame(HeadScene("card", "user1", 1, 1, 9, marked)))
@@ -74,7 +74,7 @@ class TestCards:
 
 class TestFaces:
     @pytest.mark.slow
-    def test_everybody_is_known_by_a_face_enrolled_from_other_pictures(self) -> None:
+    def test_every_face_is_recognised_from_other_pictures(self) -> None:
         reader, head = HaarReader(), camera()
         enrolled = {
             person: np.array(
@@ -91,7 +91,7 @@ class TestFaces:
 
 
 class TestFrames:
-    def test_frames_of_one_scene_differ_by_noise_and_a_frozen_camera_s_do_not(self) -> None:
+    def test_frames_differ_by_noise_unless_the_camera_is_frozen(self) -> None:
         head = camera()
         for scene in (HeadScene("room", heading=40), HeadScene("dark")):
             frames = [head.frame(scene) for _ in range(9)]
@@ -100,7 +100,7 @@ class TestFrames:
         assert {head.frame(HeadScene("frozen")) for _ in range(3)} == {last}
 
     @pytest.mark.slow
-    def test_a_camera_that_sees_is_bright_and_sharp_and_a_covered_one_is_not(self) -> None:
+    def test_only_an_uncovered_camera_is_bright_and_sharp(self) -> None:
         head = camera()
         for heading in range(-180, 180, 60):
             look = measure(picture(head.frame(HeadScene("room", heading=heading))), 1, 0.0)
@@ -109,7 +109,7 @@ class TestFrames:
         look = measure(picture(head.frame(HeadScene("dark"))), 1, 0.0)
         assert look.brightness < 0.08 and look.contrast < 0.03
 
-    def test_the_same_scene_again_costs_a_fraction_of_a_new_one(self) -> None:
+    def test_a_repeated_scene_costs_a_fraction_of_a_new_one(self) -> None:
         head = camera()
         scene = HeadScene("card", "user1", 1, 1, 9, 0b1011)
         began = process_time()
@@ -119,7 +119,7 @@ class TestFrames:
             head.frame(scene)
         assert (process_time() - began) / 20 < first / 5
 
-    def test_what_the_head_looks_at_hangs_on_where_the_robot_stands_and_how(self) -> None:
+    def test_the_scene_depends_on_the_robots_place_and_head_pose(self) -> None:
         world = bench(2)
         world.begin()
         assert world.head_scene().kind == "room"
@@ -139,7 +139,7 @@ class TestFrames:
 class TestSigns:
     @pytest.mark.slow
     @pytest.mark.parametrize("count", [1, 4, 8])
-    def test_signs_are_seen_at_the_seats_of_those_who_ask_alone(self, count: int) -> None:
+    def test_signs_are_detected_only_at_the_seats_that_ask(self, count: int) -> None:
         people = [f"user{number}" for number in range(1, count + 1)]
         infrared = InfraredCamera(ROOM, people, seed=count)
         groups = [g for size in (0, 1, 2, count) for g in combinations(range(count), size)]
@@ -151,7 +151,7 @@ class TestSigns:
 
     @pytest.mark.slow
     @pytest.mark.parametrize("count", [9, 12, 24])
-    def test_signs_in_a_hall_are_told_apart(self, count: int) -> None:
+    def test_signs_in_a_hall_are_separated(self, count: int) -> None:
         hall = load_room("hall")
         people = [f"user{number}" for number in range(1, count + 1)]
         infrared = InfraredCamera(hall, people, seed=count)

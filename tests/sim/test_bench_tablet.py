@@ -1,4 +1,4 @@
-"""The bench's tablet does to the chest screen's driver what a real one does."""
+"""The bench's tablet behaves like a real one towards the driver of the chest screen."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.hw.waiting import PATIENCE, until
 
 
 @pytest.mark.slow
-async def test_it_shows_what_it_is_told_until_it_is_switched_off(
+async def test_the_tablet_shows_each_picture_until_it_is_switched_off(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(chest, "GONE_SECONDS", 1.0)

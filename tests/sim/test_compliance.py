@@ -1,4 +1,4 @@
-"""People always follow, and comply in time as their hidden preference has it."""
+"""Simulated people always follow, and comply in time by their hidden preferences."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STRATEGIES = ("neutral", "praise", "suggestion", "scarcity")
 
 
 class Counted(Random):
-    """A generator that counts how often it is drawn from."""
+    """A generator that counts its draws."""
 
     drawn = 0
 
@@ -39,13 +39,13 @@ def test_the_user_model_is_the_fitted_one() -> None:
     assert load_users().occluded == pytest.approx(23 / 71, abs=5e-4)
 
 
-def test_people_of_a_teaching_game_ask_more_often_and_are_the_same_otherwise() -> None:
+def test_people_in_a_teaching_game_only_ask_more_often() -> None:
     users, teaching = load_users(), load_users().teaching()
     assert teaching.ask == pytest.approx(2.3 * 0.0074)
     assert teaching.miss == users.miss
 
 
-def test_each_person_prefers_one_strategy_and_they_differ() -> None:
+def test_preferred_strategies_are_assigned_in_turn() -> None:
     people = [f"user{n}" for n in range(1, 9)]
     hidden = preferences_in_turn(people, STRATEGIES, load_users())
     assert list(hidden) == people
@@ -74,13 +74,13 @@ def test_a_response_is_always_followed_and_complied_within_the_window_or_late(
 
 
 @pytest.mark.parametrize("chance", [0.0, 0.4, 0.9, 1.0])
-def test_compliance_happens_as_often_as_the_preference_says(chance: float) -> None:
+def test_the_compliance_rate_equals_the_preference(chance: float) -> None:
     rng = Random(3)
     complied = sum(respond({"a": {"s": chance}}, "a", "s", 10, rng).complied for _ in range(4000))
     assert abs(complied / 4000 - chance) <= 4 * sqrt(chance * (1 - chance) / 4000)
 
 
-def test_in_games_people_comply_with_what_they_prefer(
+def test_people_in_games_comply_with_their_preferred_strategy(
     activity: Activity, ids: tuple[str, ...]
 ) -> None:
     for strategy in STRATEGIES:
@@ -111,7 +111,7 @@ def test_waiting_is_at_least_a_call(seed: int, chance: float) -> None:
     assert waiting_time(Random(seed).random, chance) > 0
 
 
-def test_waiting_takes_as_long_as_the_chance_or_the_rate_says() -> None:
+def test_waiting_times_match_the_probability_or_rate() -> None:
     uniform = Random(5).random
     calls = [waiting_calls(uniform, 0.1) for _ in range(8000)]
     assert sum(calls) / 8000 == pytest.approx(10, rel=0.05)
@@ -121,7 +121,7 @@ def test_waiting_takes_as_long_as_the_chance_or_the_rate_says() -> None:
     )
 
 
-def test_what_cannot_happen_is_waited_for_for_ever_and_what_must_comes_at_once() -> None:
+def test_impossible_events_never_come_and_certain_ones_at_once() -> None:
     uniform = Random(5).random
     assert waiting_calls(uniform, 0) > 1e8
     assert waiting_calls(uniform, 1) == 1
@@ -139,7 +139,7 @@ def test_what_cannot_happen_is_waited_for_for_ever_and_what_must_comes_at_once()
         ("[teaching]", "[teeching]", ("teaching: is missing",)),
     ],
 )
-def test_a_mistake_in_the_user_model_is_one_line(
+def test_a_mistake_in_the_user_model_is_reported_in_one_line(
     tmp_path: Path, old: str, new: str, said: tuple[str, ...]
 ) -> None:
     text = (Path(str(files("tangy_sim.worlds"))) / "users.toml").read_text(encoding="utf-8")

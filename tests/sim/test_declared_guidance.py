@@ -1,4 +1,4 @@
-"""A guided game of a declared activity shows what nobody has shown, and a search proves it."""
+"""Guided games of declared activities show undemonstrated situations, and a search proves it."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def play(world: DeclaredWorld, activity: DeclaredActivity) -> list[ActivityState
 
 @pytest.mark.parametrize("name", DECLARED)
 @pytest.mark.parametrize("count", [1, 2, pytest.param(5, marks=pytest.mark.slow)])
-def test_two_guided_games_show_all_that_can_come_about(name: str, count: int) -> None:
+def test_two_guided_games_show_every_possible_situation(name: str, count: int) -> None:
     activity = declared(name)
     players = activity.teams or tuple(f"user{number}" for number in range(1, count + 1))
     taught = DemonstratedMoves(activity.behaviours)
@@ -70,7 +70,7 @@ def test_the_same_seed_and_actions_give_the_same_states(name: str) -> None:
     assert one != play(DeclaredWorld(activity, players, seed=6), activity)
 
 
-def test_what_was_shown_before_is_not_brought_about_again() -> None:
+def test_demonstrated_situations_are_not_repeated() -> None:
     activity = declared("trivia")
     nothing = DemonstratedMoves(activity.behaviours)
     first = GuidedDeclaredWorld(activity, ("user1", "user2"), seed=1, shown=nothing)
@@ -81,7 +81,7 @@ def test_what_was_shown_before_is_not_brought_about_again() -> None:
     assert len({state.situation for state in long}) == len(activity.situations)
 
 
-def test_a_behaviour_that_was_renamed_since_it_was_shown_is_shown_again() -> None:
+def test_a_renamed_behaviour_is_shown_again() -> None:
     activity = declared("trivia")
     taught = expected_moves(activity)
     world = DeclaredWorld(activity, ("user1",), seed=1)
@@ -101,9 +101,7 @@ def test_a_behaviour_that_was_renamed_since_it_was_shown_is_shown_again() -> Non
     ],
 )
 @pytest.mark.parametrize("count", [1, pytest.param(2, marks=pytest.mark.slow)])
-def test_two_guided_games_are_enough_where_something_comes_about_only_once_in_a_game(
-    name: str, count: int
-) -> None:
+def test_two_guided_games_show_situations_that_occur_once_in_a_game(name: str, count: int) -> None:
     activity = read_activity(FILES / f"{name}.toml")
     assert isinstance(activity, DeclaredActivity)
     players = tuple(f"user{number}" for number in range(1, count + 1))
@@ -144,7 +142,7 @@ def test_what_is_announced_comes_after_the_next_command() -> None:
     assert announced > 3
 
 
-def test_a_guided_game_that_goes_back_says_what_for() -> None:
+def test_a_guided_game_gives_the_reason_for_going_back() -> None:
     activity = read_activity(FILES / "toss.toml")
     assert isinstance(activity, DeclaredActivity)
     world = GuidedDeclaredWorld(
@@ -163,7 +161,7 @@ def test_a_guided_game_that_goes_back_says_what_for() -> None:
     assert [one.step for one in steps] == list(range(len(steps)))
 
 
-def test_looking_ahead_stops_after_so_many_states_however_many_people_there_are() -> None:
+def test_the_lookahead_is_bounded_in_states() -> None:
     activity = read_activity(FILES / "toss.toml")
     assert isinstance(activity, DeclaredActivity)
     taught = expected_moves(activity)  # nothing is left to find
@@ -175,7 +173,7 @@ def test_looking_ahead_stops_after_so_many_states_however_many_people_there_are(
 
 
 class Copies(DeclaredGame):
-    """A game that counts how often it, or a copy of it, is copied."""
+    """A game that counts its copies, and the copies of copies."""
 
     made = 0
 
@@ -193,7 +191,7 @@ class Copies(DeclaredGame):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", each_of_first(DECLARED))
-def test_a_guided_game_of_twelve_people_shows_as_much(name: str) -> None:
+def test_a_guided_game_of_twelve_people_shows_every_situation(name: str) -> None:
     activity = declared(name)
     players = activity.teams or tuple(f"user{number}" for number in range(1, 13))
     taught = DemonstratedMoves(activity.behaviours)
@@ -205,7 +203,7 @@ def test_a_guided_game_of_twelve_people_shows_as_much(name: str) -> None:
     assert explore_demonstrated(activity.declaration, pair, taught).open == {}
 
 
-def test_a_search_names_what_was_not_shown() -> None:
+def test_a_search_names_undemonstrated_situations() -> None:
     activity = load_activity("trivia")
     assert isinstance(activity, DeclaredActivity)
     taught = DemonstratedMoves(activity.behaviours)
@@ -220,7 +218,7 @@ def test_a_search_names_what_was_not_shown() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DECLARED)
 @pytest.mark.parametrize("guided", [False, True])
-def test_other_words_for_everything_change_nothing(name: str, *, guided: bool) -> None:
+def test_renaming_everything_changes_no_guidance(name: str, *, guided: bool) -> None:
     activity = declared(name)
     declaration, old = renamed(activity.declaration)
     other = build_activity(declaration)

@@ -1,4 +1,4 @@
-"""Simulated people answer unclearly at times: they are asked again, and are never judged by it."""
+"""Unclear answers of simulated people: asked again, and never judged."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def games(unclear: float, count: int) -> tuple[list[Outcome], int]:
     return found, ended
 
 
-def test_a_sound_takes_as_long_as_it_lasts(tmp_path: Path) -> None:
+def test_a_sound_takes_its_duration(tmp_path: Path) -> None:
     activity = read_declared(guess_the_sound(tmp_path))
     seconds = []
     for long in (0.5, 60.5):
@@ -52,7 +52,7 @@ def test_a_sound_takes_as_long_as_it_lasts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_the_text_in_turn_is_what_was_said(name: str) -> None:
+def test_the_spoken_texts_rotate_in_order(name: str) -> None:
     activity, taught = declared(name), expected_moves(declared(name))
     world = DeclaredWorld(activity, activity.teams or PEOPLE, seed=2)
     times, told = Counter[str](), set[str]()
@@ -74,7 +74,7 @@ def test_the_text_in_turn_is_what_was_said(name: str) -> None:
     assert len(told) > 3
 
 
-def test_an_unclear_answer_is_asked_for_again_and_games_come_to_their_end() -> None:
+def test_unclear_answers_are_asked_again_and_games_end() -> None:
     found, ended = games(unclear=0.4, count=10)
     unclear = [one for outcome in found for one in outcome.unclear]
     assert ended == 10
@@ -86,7 +86,7 @@ def test_an_unclear_answer_is_asked_for_again_and_games_come_to_their_end() -> N
         assert all(times <= most for times in asked.values())
 
 
-def test_what_is_never_clear_is_never_judged() -> None:
+def test_an_unclear_answer_is_never_judged() -> None:
     activity = declared("trivia")
     world = DeclaredWorld(activity, PEOPLE, seed=4, unclear=1.0)
     taught = expected_moves(activity)
@@ -97,7 +97,7 @@ def test_what_is_never_clear_is_never_judged() -> None:
         assert not any(fact == "answer" for fact, _ in world.game.values)
 
 
-def test_with_clear_answers_the_games_are_as_without_the_chance() -> None:
+def test_clear_answers_give_the_same_games() -> None:
     activity = declared("trivia")
     usual = DeclaredWorld(activity, PEOPLE, seed=4)
     taught = expected_moves(activity)
@@ -109,7 +109,7 @@ def test_with_clear_answers_the_games_are_as_without_the_chance() -> None:
         assert usual.execute(action) == outcome
 
 
-def test_everything_that_a_person_did_after_a_behaviour_is_told() -> None:
+def test_several_actions_of_a_person_after_a_behaviour_are_listed() -> None:
     activity, several = declared("exercises"), 0
     taught = expected_moves(activity)
     for seed in range(12):

@@ -1,4 +1,4 @@
-"""One guided game shows everything, at a pace that a person can teach at."""
+"""One guided game shows every situation, at a pace for a human teacher."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from tests.sim.guided import (
 @pytest.mark.slow
 @pytest.mark.xdist_group("guide")
 @pytest.mark.parametrize("users", range(1, 9))
-def test_one_game_shows_every_situation_whatever_the_seed(users: int) -> None:
+def test_one_game_shows_every_situation_for_any_seed(users: int) -> None:
     for seed in SEEDS:
         turns = guided("bingo", seed, users)
         assert shown(turns) == set(BINGO.situations), seed
@@ -60,7 +60,7 @@ def test_one_game_teaches_the_exact_policy(seed: int, users: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("guide")
-def test_an_activity_without_a_word_in_common_is_shown_whole_too() -> None:
+def test_a_made_up_activity_is_shown_completely() -> None:
     """Somebody asks at its end in every other game, since one game has but one end."""
     for users in (1, 2, 5, 8):
         for seed in SEEDS:
@@ -111,14 +111,14 @@ def varied(name: str) -> Activity:
     ["free centre", "four corners", "missing before wrong", "line after errors", "no joke"]
     + [f"joke after {n}" for n in (1, 40, 60)],
 )
-def test_other_cards_and_other_rules_are_shown_whole_too(name: str, users: int) -> None:
+def test_other_cards_and_rules_are_shown_completely(name: str, users: int) -> None:
     activity = varied(name)
     for seed in range(6):
         turns = list(play(GuidedWorld(activity, IDS[:users], seed=seed)))
         assert shown(turns) == set(activity.situations), seed
 
 
-def test_what_can_never_come_about_does_not_keep_the_game_from_ending() -> None:
+def test_an_impossible_situation_does_not_delay_the_end() -> None:
     activity = varied("joke after 500")
     turns = list(play(GuidedWorld(activity, IDS[:4], seed=1)))
     lacking = set(activity.situations) - shown(turns)
@@ -130,7 +130,7 @@ def test_what_can_never_come_about_does_not_keep_the_game_from_ending() -> None:
 
 
 @pytest.mark.xdist_group("guide")
-def test_a_game_is_no_longer_than_it_needs_to_be() -> None:
+def test_a_guided_game_is_short() -> None:
     """Needed: 18 calls to the joke and one to win, 4 visits, greeting, joke and goodbye."""
     lengths = [len(turns) for turns in games()]
     assert all(34 <= length <= 40 for length in lengths)
@@ -138,7 +138,7 @@ def test_a_game_is_no_longer_than_it_needs_to_be() -> None:
 
 
 @pytest.mark.xdist_group("guide")
-def test_nobody_wins_before_the_rest_was_shown_and_then_somebody_does_soon() -> None:
+def test_a_win_comes_soon_after_everything_else_was_shown() -> None:
     for turns in games():
         names = [t.step.behaviour for t in turns]
         states = [t.step.state.situation.user_state for t in turns]
@@ -154,7 +154,7 @@ def test_nobody_wins_before_the_rest_was_shown_and_then_somebody_does_soon() -> 
 
 
 @pytest.mark.xdist_group("guide")
-def test_one_person_asks_at_a_time_and_two_calls_pass_between() -> None:
+def test_requests_come_one_at_a_time_with_two_calls_between() -> None:
     """The others are left in peace while somebody is visited, so each visit ends at the front."""
     for turns in games():
         calls, closed_at = 0, 0
@@ -183,7 +183,7 @@ def test_visits_are_spread_over_the_calls_to_the_joke() -> None:
 
 
 @pytest.mark.xdist_group("guide")
-def test_others_ask_before_anybody_asks_again_and_somebody_else_wins_as_a_rule() -> None:
+def test_different_people_ask_before_anybody_repeats() -> None:
     for users in range(1, 9):
         others = 0
         for seed in SEEDS:
@@ -196,7 +196,7 @@ def test_others_ask_before_anybody_asks_again_and_somebody_else_wins_as_a_rule()
 
 
 @pytest.mark.xdist_group("guide")
-def test_games_differ_in_what_comes_when_and_who_shows_it() -> None:
+def test_games_differ_in_order_and_people() -> None:
     orders, winners, hidden = set(), set(), set()
     for seed in SEEDS:
         turns = guided("bingo", seed, 4)
@@ -211,7 +211,7 @@ def test_games_differ_in_what_comes_when_and_who_shows_it() -> None:
 
 
 @pytest.mark.xdist_group("guide")
-def test_an_error_can_be_seen_being_made_before_it_is_asked_about() -> None:
+def test_an_error_is_visible_before_its_correction() -> None:
     for seed in SEEDS:
         turns = guided("bingo", seed, 4)
         marked: set[tuple[str, str]] = set()
@@ -227,7 +227,7 @@ def test_an_error_can_be_seen_being_made_before_it_is_asked_about() -> None:
 
 
 @pytest.mark.xdist_group("guide")
-def test_whoever_has_a_full_line_of_marks_asks() -> None:
+def test_a_person_with_a_full_line_of_marks_asks() -> None:
     for seed in range(40):
         world = GuidedWorld(BINGO, IDS[:4], seed=seed)
         for t in play(world):
@@ -241,7 +241,7 @@ def test_whoever_has_a_full_line_of_marks_asks() -> None:
 @pytest.mark.slow
 @examples(max_examples=30)
 @given(st.integers(), st.integers(1, 8), MISTAKES)
-def test_the_same_seed_and_actions_give_the_same_states_and_looking_changes_nothing(
+def test_equal_seeds_and_actions_give_equal_states(
     seed: int, users: int, mistakes: list[Mistake]
 ) -> None:
     one, other = (GuidedWorld(BINGO, IDS[:users], seed=seed) for _ in range(2))
@@ -256,14 +256,14 @@ def test_the_same_seed_and_actions_give_the_same_states_and_looking_changes_noth
         assert one.begin() == other.begin()
 
 
-def test_the_cards_are_those_of_the_game_that_is_not_guided() -> None:
+def test_a_guided_game_deals_the_cards_of_the_unguided_one() -> None:
     plain, guided_one = (made(BINGO, IDS, seed=5) for made in (SimulatedWorld, GuidedWorld))
     for person in IDS:
         assert plain.players[person].numbers == guided_one.players[person].numbers
     assert sorted(guided_one.order) == list(BINGO.deck.numbers)
 
 
-def test_another_game_in_the_same_world_is_another_one_and_shows_all_again() -> None:
+def test_a_second_game_differs_and_shows_everything_again() -> None:
     world = GuidedWorld(BINGO, IDS[:4], seed=8)
     first = list(play(world))
     world.begin()
@@ -273,7 +273,7 @@ def test_another_game_in_the_same_world_is_another_one_and_shows_all_again() -> 
     assert shown(first) == shown(second) == set(BINGO.situations)
 
 
-def test_a_guided_world_is_a_world_and_takes_what_a_simulated_one_takes() -> None:
+def test_a_guided_world_accepts_the_options_of_a_simulated_one() -> None:
     users = replace(load_users(), away_calls=10.0)
     preferences = {p: dict.fromkeys(BINGO.strategies, 0.0) for p in IDS}
     made = GuidedWorld(BINGO, IDS[:2], seed=1, users=users, preferences=preferences)

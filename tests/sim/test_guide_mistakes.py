@@ -1,4 +1,4 @@
-"""Whatever a teacher does, a guided game goes on offering what was not shown yet."""
+"""A guided game keeps offering undemonstrated situations despite mistakes of the teacher."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def check_order(world: GuidedWorld) -> None:
 
 @tried(100)
 @given(st.integers(0, 999), st.integers(1, 8), MISTAKES)
-def test_mistakes_do_not_keep_anything_from_being_shown_before_the_win(
+def test_mistakes_hide_no_situation_before_the_win(
     seed: int, users: int, mistakes: list[Mistake]
 ) -> None:
     world = GuidedWorld(BINGO, IDS[:users], seed=seed)
@@ -57,7 +57,7 @@ def test_mistakes_do_not_keep_anything_from_being_shown_before_the_win(
 
 @tried(40)
 @given(st.integers(0, 99), st.integers(1, 8), MISTAKES)
-def test_mistakes_do_no_harm_to_a_made_up_activity_either(
+def test_mistakes_hide_no_situation_of_a_made_up_activity(
     seed: int, users: int, mistakes: list[Mistake]
 ) -> None:
     world = GuidedWorld(LANTERNS, IDS[:users], seed=seed)
@@ -100,7 +100,7 @@ def test_many_numbers_called_too_early_leave_enough_to_show(users: int, early: i
 
 
 @pytest.mark.parametrize("users", [1, 4])
-def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
+def test_a_long_wait_keeps_the_planned_card_state(users: int) -> None:
     """While somebody waits, 30 numbers are called; then their card must be as it was wanted."""
     call = BINGO.action(BINGO.behaviours["call number"], None, None)
     for seed in range(30):
@@ -116,7 +116,7 @@ def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
         assert not BINGO.deck.wins(card.called)
 
 
-def test_what_was_tried_in_vain_waits_and_a_full_line_waits_longest() -> None:
+def test_failed_visits_are_postponed_and_a_full_line_comes_last() -> None:
     plan = GuidedPlan(LANTERNS, Random(1).random)
     for _ in range(4):
         order = [state.name for state in plan.visits()]
@@ -126,7 +126,7 @@ def test_what_was_tried_in_vain_waits_and_a_full_line_waits_longest() -> None:
     assert GuidedPlan(BINGO, Random(1).random).wanted(spent=True) == BINGO.user_states[1]
 
 
-def test_people_ask_even_where_cards_are_not_looked_at() -> None:
+def test_people_ask_in_activities_without_card_visits() -> None:
     rules = tuple(r for r in BINGO.stage_rules if r.condition != "beside requester")
     world = GuidedWorld(replace(BINGO, stage_rules=rules), IDS[:4], seed=1)
     for _ in range(10):
@@ -134,7 +134,7 @@ def test_people_ask_even_where_cards_are_not_looked_at() -> None:
     assert len(world.scene().requests) == 1
 
 
-def test_a_winner_who_was_sent_on_without_a_celebration_comes_back() -> None:
+def test_an_uncelebrated_winner_asks_again() -> None:
     for seed in range(20):
         world = GuidedWorld(BINGO, IDS[:4], seed=seed)
         encourage = BINGO.behaviours["encourage"]
@@ -150,7 +150,7 @@ def test_a_winner_who_was_sent_on_without_a_celebration_comes_back() -> None:
         assert world.observe().step < 70
 
 
-def test_an_activity_in_which_nothing_is_drawn_is_guided_as_far_as_cards_go() -> None:
+def test_an_activity_without_draws_is_guided_as_far_as_possible() -> None:
     behaviours = {
         name: replace(b, effect="none") if b.effect == "draw" else b
         for name, b in BINGO.behaviours.items()

@@ -1,4 +1,4 @@
-"""A relay delays a connection, keeps its bytes in order, and sends again what it loses."""
+"""A relay delays a connection, keeps its bytes in order, and resends lost packets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.hw.waiting import PATIENCE, until
 
 
 class Certain(Random):
-    """Loses packets as told, 1 for lost, and after that none."""
+    """A generator that loses given packets (1 for lost), and none afterwards."""
 
     def __init__(self, lost: str) -> None:
         super().__init__(1)
@@ -36,12 +36,12 @@ class Certain(Random):
         ("", 0, 0.05),
     ],
 )
-def test_what_is_lost_is_late(lost: str, size: int, late: float) -> None:
+def test_a_lost_packet_arrives_late(lost: str, size: int, late: float) -> None:
     link = LinkQuality(delay=0.05, loss=0.5)
     assert link.late(size, Certain(lost)) == pytest.approx(late)
 
 
-def test_as_many_packets_are_lost_as_was_asked_for() -> None:
+def test_the_loss_rate_matches_the_setting() -> None:
     link, chance = LinkQuality(loss=0.1), Random(1)
     lost = sum(link.late(10, chance) > 0 for _ in range(2000))
     assert 150 < lost < 250  # 200 expected, with a standard deviation of 13
@@ -70,7 +70,7 @@ async def relayed(quality: LinkQuality, url: str) -> AsyncIterator[str]:
     await relays.close()
 
 
-async def test_bytes_arrive_in_order_and_later_than_the_delay_in_both_directions() -> None:
+async def test_bytes_arrive_in_order_and_delayed_in_both_directions() -> None:
     sent = bytes(number % 251 for number in range(200_000))
     async with echo() as (url, _), relayed(LinkQuality(0.02, 0.05), url) as there:
         assert there != url and there.endswith("/head")

@@ -1,4 +1,4 @@
-"""Simulated network cameras send what they were given, newest first, and break as real ones do."""
+"""Simulated network cameras send their newest picture, and fail like real ones."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.hw.waiting import PATIENCE, until
 
 
 class Viewer:
-    """Somebody who reads a stream part by part."""
+    """A client that reads a stream part by part."""
 
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._reader, self._writer = reader, writer
@@ -50,7 +50,7 @@ async def server() -> AsyncIterator[MjpegServer]:
     await made.close()
 
 
-async def test_each_path_is_a_camera_of_its_own(server: MjpegServer) -> None:
+async def test_each_path_is_a_separate_camera(server: MjpegServer) -> None:
     head, infrared = await Viewer.open(server, "/head"), await Viewer.open(server, "/infrared?x=1")
     await until(lambda: all(camera.viewers == 1 for camera in server.camera.values()))
     server.push("/head", b"a head")
@@ -61,7 +61,7 @@ async def test_each_path_is_a_camera_of_its_own(server: MjpegServer) -> None:
     await until(lambda: server.camera["/head"].viewers == 0)
 
 
-async def test_who_comes_late_sees_the_newest_at_once(server: MjpegServer) -> None:
+async def test_a_late_viewer_gets_the_newest_picture_at_once(server: MjpegServer) -> None:
     for picture in (b"one", b"two"):
         server.push("/head", picture)
     viewer = await Viewer.open(server, "/head")
@@ -81,7 +81,7 @@ async def test_a_slow_viewer_misses_pictures_but_gets_the_newest(server: MjpegSe
     assert seen == sorted(seen) and len(seen) < count / 2
 
 
-async def test_a_rate_is_not_exceeded_and_the_newest_comes_all_the_same(
+async def test_a_limited_rate_still_delivers_the_newest_picture(
     server: MjpegServer,
 ) -> None:
     server.camera["/head"].rate = 10
@@ -92,7 +92,7 @@ async def test_a_rate_is_not_exceeded_and_the_newest_comes_all_the_same(
     assert [await viewer.see(), await viewer.see()] == [b"one", b"three"]
 
 
-async def test_a_frozen_one_goes_on_with_its_last_picture(server: MjpegServer) -> None:
+async def test_a_frozen_camera_repeats_its_last_picture(server: MjpegServer) -> None:
     viewer = await Viewer.open(server, "/head")
     await server.somebody("/head")
     server.push("/head", b"before")
@@ -105,7 +105,7 @@ async def test_a_frozen_one_goes_on_with_its_last_picture(server: MjpegServer) -
     assert await viewer.see() == b"after"
 
 
-async def test_a_closed_one_cuts_its_viewers_and_no_others(server: MjpegServer) -> None:
+async def test_a_closed_camera_disconnects_only_its_viewers(server: MjpegServer) -> None:
     head, infrared = await Viewer.open(server, "/head"), await Viewer.open(server, "/infrared")
     await until(lambda: all(camera.viewers for camera in server.camera.values()))
     server.camera["/head"].closed = True
@@ -118,7 +118,7 @@ async def test_a_closed_one_cuts_its_viewers_and_no_others(server: MjpegServer) 
     assert await (await Viewer.open(server, "/head")).see() == b"again"
 
 
-async def test_one_that_hangs_says_nothing_and_cuts_nobody(server: MjpegServer) -> None:
+async def test_a_hanging_camera_sends_nothing_and_disconnects_nobody(server: MjpegServer) -> None:
     viewer = await Viewer.open(server, "/head")
     await server.somebody("/head")
     server.push("/head", b"before")
@@ -137,7 +137,7 @@ async def test_one_that_hangs_says_nothing_and_cuts_nobody(server: MjpegServer) 
 @pytest.mark.parametrize(
     "request_line", [b"GET /tail HTTP/1.0", b"POST /head HTTP/1.0", b"rubbish"]
 )
-async def test_anything_else_is_not_found(server: MjpegServer, request_line: bytes) -> None:
+async def test_unknown_paths_are_not_found(server: MjpegServer, request_line: bytes) -> None:
     reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
     writer.write(request_line + b"\r\n\r\n")
     async with asyncio.timeout(PATIENCE):

@@ -1,4 +1,4 @@
-"""Simulated people miss, slip, ask and hide their cards as often as the user model says."""
+"""The rates of misses, slips, requests and hidden cards match the user model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def action(name: str, target: str | None = None) -> Action:
     return BINGO.action(BINGO.behaviours[name], target, None)
 
 
-def test_a_called_number_is_missed_as_often_as_the_model_says() -> None:
+def test_the_rate_of_missed_numbers_matches_the_model() -> None:
     world = SimulatedWorld(BINGO, IDS, seed=31, users=replace(USERS, slip=0))
     called = missed = 0
     for _ in range(60):
@@ -36,7 +36,7 @@ def test_a_called_number_is_missed_as_often_as_the_model_says() -> None:
     assert missed / called == pytest.approx(0.101, rel=0.08)
 
 
-def test_an_uncalled_number_is_marked_as_often_as_the_model_says() -> None:
+def test_the_rate_of_wrong_marks_matches_the_model() -> None:
     world = SimulatedWorld(BINGO, IDS, seed=32, users=replace(USERS, miss=0))
     slips, calls = 0, 20
     for _ in range(200):
@@ -64,7 +64,7 @@ def test_a_slip_marks_a_number_that_was_not_called() -> None:
         world.begin()
 
 
-def test_nobody_marks_the_free_centre_for_it_is_marked_already() -> None:
+def test_nobody_marks_the_free_centre() -> None:
     deck = replace(BINGO.deck, free_centre=True)
     world = SimulatedWorld(
         replace(BINGO, deck=deck), IDS, seed=36, users=replace(USERS, miss=0, slip=0)
@@ -78,7 +78,7 @@ def test_nobody_marks_the_free_centre_for_it_is_marked_already() -> None:
 
 
 @pytest.mark.parametrize(("miss", "factor"), [(0.0, 1.0), (1.0, 1.47)])
-def test_help_is_asked_for_as_often_as_the_model_says_and_more_with_an_error(
+def test_the_rate_of_requests_matches_the_model_and_rises_with_errors(
     miss: float, factor: float
 ) -> None:
     deck = replace(BINGO.deck, patterns=("four corners",))  # so that hardly anybody wins
@@ -101,7 +101,7 @@ def test_help_is_asked_for_as_often_as_the_model_says_and_more_with_an_error(
     assert asked / waited == pytest.approx(0.0074 * factor, rel=0.1)
 
 
-def test_a_card_is_out_of_view_on_arrival_as_often_as_the_model_says() -> None:
+def test_the_rate_of_cards_out_of_view_matches_the_model() -> None:
     world = SimulatedWorld(BINGO, IDS, seed=34)
     world.execute(action("greeting"))
     hidden, visits = 0, 4000

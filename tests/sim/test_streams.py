@@ -1,4 +1,4 @@
-"""Simulated games can be had again from their seed, and no random stream shifts another."""
+"""Simulated games are reproducible from their seed, and random streams are independent."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_another_seed_gives_other_games() -> None:
     assert len({json.dumps(dealt(world(seed), 1)) for seed in range(50)}) == 50
 
 
-def test_the_games_of_seed_one_are_those_of_every_machine_and_version() -> None:
+def test_the_games_of_seed_one_never_change() -> None:
     """Change this digest only with a reason: demonstrations kept with other games break off."""
     made = world(1)
     steps = []
@@ -102,7 +102,7 @@ def test_more_people_do_not_change_the_numbers_called_nor_the_first_cards() -> N
         assert few.players[person].numbers == many.players[person].numbers
 
 
-def test_whom_they_comply_with_does_not_change_what_happens() -> None:
+def test_preferences_do_not_change_the_games() -> None:
     made = world(5)
     never = SimulatedWorld(
         BINGO, IDS[:4], seed=5, preferences={p: dict.fromkeys(BINGO.strategies, 0.0) for p in IDS}
@@ -112,7 +112,7 @@ def test_whom_they_comply_with_does_not_change_what_happens() -> None:
         made.begin(), never.begin()
 
 
-def test_the_strategy_used_does_not_change_what_happens() -> None:
+def test_strategies_do_not_change_the_games() -> None:
     plain, praising = world(6), world(6)
     for _ in range(10):
         while not plain.over:

@@ -22,7 +22,7 @@ GAMES = 1000
 
 
 class Totals:
-    """What many games of four people added up to when played as expected."""
+    """Totals of many games of four people, played with the expected behaviours."""
 
     def __init__(self, activity: Activity, seed: int, users: UserModel) -> None:
         world = SimulatedWorld(activity, [f"user{n}" for n in range(1, 5)], seed=seed, users=users)
@@ -48,7 +48,7 @@ def live(request: pytest.FixtureRequest) -> Totals:
 
 
 @pytest.mark.xdist_group("table two")
-def test_every_behaviour_comes_about_as_often_as_in_the_fitted_model(live: Totals) -> None:
+def test_the_frequency_of_each_behaviour_matches_the_fitted_model(live: Totals) -> None:
     assert set(live.done) == set(FITTED)
     for behaviour, fitted in FITTED.items():
         assert live.done[behaviour] / GAMES * 20 == pytest.approx(fitted, rel=0.15), behaviour
@@ -78,6 +78,6 @@ def test_visits_read_more_cards_than_there_are_visits(live: Totals) -> None:
 
 
 @pytest.mark.slow
-def test_a_teaching_game_has_the_papers_62_behaviours(activity: Activity) -> None:
+def test_a_teaching_game_has_62_behaviours_like_the_paper(activity: Activity) -> None:
     totals = Totals(activity, 20260731, load_users().teaching())
     assert totals.steps / GAMES == pytest.approx(62, rel=0.03)

@@ -1,4 +1,4 @@
-"""The simulated world: games that can be had again, streams that do not shift each other, rules."""
+"""The simulated world: reproducible games, independent random streams, and rules."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_a_read_card_shows_the_numbers_called_so_far() -> None:
     assert cards > 100
 
 
-def test_whoever_has_a_full_line_of_marks_asks_for_help() -> None:
+def test_a_person_with_a_full_line_of_marks_asks_for_help() -> None:
     made = world(11)
     for _ in range(60):
         for _ in game(made):
@@ -115,7 +115,7 @@ def test_whoever_has_a_full_line_of_marks_asks_for_help() -> None:
         made.begin()
 
 
-def test_nobody_is_shown_as_asking_after_the_goodbye() -> None:
+def test_no_request_is_shown_after_the_goodbye() -> None:
     made, asked = world(14), 0
     for _ in range(20):
         for _ in game(made):
@@ -137,7 +137,7 @@ def test_nobody_asks_before_the_greeting() -> None:
     assert len(made.scene().requests) == 4
 
 
-def test_what_people_are_asked_about_is_what_is_wrong_and_then_it_is_right() -> None:
+def test_corrections_mend_the_error_on_the_card() -> None:
     made = world(13)
     mended = 0
     for _ in range(80):
@@ -178,7 +178,7 @@ def test_perfect_people_ask_only_when_they_have_won() -> None:
 
 
 @pytest.mark.parametrize("occluded", [0.0, 1.0])
-def test_a_card_is_out_of_view_on_arrival_as_often_as_the_model_says(occluded: float) -> None:
+def test_a_card_is_out_of_view_on_arrival_by_the_user_model(occluded: float) -> None:
     made = world(16, model=replace(USERS, occluded=occluded))
     for _ in range(30):
         for _, action, _, after in game(made):
@@ -196,7 +196,7 @@ def test_a_visit_takes_longer_than_a_call() -> None:
         made.begin()
 
 
-def test_when_all_numbers_are_called_calling_goes_on_without_one() -> None:
+def test_calls_after_the_last_number_draw_none() -> None:
     made = world(18, model=replace(USERS, miss=1, slip=0, ask=0))
     made.execute(expected(made))
     call = BINGO.action(BINGO.behaviours["call number"], None, None)
@@ -216,7 +216,7 @@ def test_when_all_numbers_are_called_calling_goes_on_without_one() -> None:
         max_size=60,
     ),
 )
-def test_any_behaviours_in_any_order_leave_a_world_that_can_be_seen(
+def test_any_sequence_of_behaviours_leaves_a_consistent_world(
     seed: int, users: int, wishes: list[tuple[str, str | None]]
 ) -> None:
     made = world(seed, users, USERS.teaching())
@@ -248,7 +248,7 @@ def test_a_new_game_begins_at_the_start_with_new_cards() -> None:
     assert [player.numbers for player in made.players.values()] != first
 
 
-def test_nothing_in_the_world_knows_bingo(
+def test_the_world_plays_a_made_up_activity(
     lanterns: Activity, cover: Callable[[str, int, int], tuple[object, ...]]
 ) -> None:
     assert cover("lanterns", 1, 5)
@@ -260,7 +260,7 @@ def test_nothing_in_the_world_knows_bingo(
         made.begin()
 
 
-def test_mending_what_is_not_wrong_counts_as_not_done_and_asks_nobody() -> None:
+def test_an_unnecessary_correction_fails_without_a_request() -> None:
     made = world(3, model=USERS.teaching())
     while made.observe().situation.user_state != "correctly marked":
         if made.over:
