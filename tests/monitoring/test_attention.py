@@ -1,4 +1,4 @@
-"""What each person got of a game, and the tables for researchers: read from the log alone."""
+"""The attention for each person in a game, and tables for researchers, from the log alone."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def replay_of(*states: ActivityState, behaviour: str = "b", target: str = "") ->
     return found
 
 
-def test_who_asks_between_two_steps_is_counted_though_tangy_is_there_after_the_second() -> None:
+def test_a_request_during_a_step_is_counted() -> None:
     replay = replay_of(state(FRONT), state(FRONT), state("ann", ["ann"]))
     asking = replace(replay.done[1], state=state(FRONT, ["ann"]))
     moments = [replace(m, what=asking) if m.what is replay.done[1] else m for m in replay.moments]
@@ -75,7 +75,7 @@ def test_who_asks_between_two_steps_is_counted_though_tangy_is_there_after_the_s
     assert (unasked.requests, unasked.visits) == (0, 1)
 
 
-def test_a_wait_ends_when_the_robot_is_there() -> None:
+def test_a_wait_ends_on_the_arrival_of_the_robot() -> None:
     replay = replay_of(
         state(FRONT), state(FRONT, ["ann"]), state(FRONT, ["ann"]), state("ann", ["ann"]),
         state(FRONT),
@@ -85,13 +85,13 @@ def test_a_wait_ends_when_the_robot_is_there() -> None:
     assert (bob.requests, bob.visits, bob.longest) == (0, 0, None)
 
 
-def test_who_is_not_reached_waits_to_the_end() -> None:
+def test_an_unvisited_person_waits_to_the_end() -> None:
     replay = replay_of(state(FRONT), state(FRONT, ["bob"]), state(FRONT, ["bob"]))
     bob = attention_in(replay)["bob"]
     assert (bob.waits, bob.open, bob.longest, bob.median) == ([], [10.0], 10.0, None)
 
 
-def test_who_waits_while_numbers_are_called_first_waits_on() -> None:
+def test_calls_first_does_not_interrupt_a_wait() -> None:
     replay = replay_of(
         state(FRONT), state(FRONT, ["bob"]), state(FRONT), state(FRONT, ["bob"]),
         state("bob", ["bob"]),
@@ -108,7 +108,7 @@ def test_who_waits_while_numbers_are_called_first_waits_on() -> None:
     assert (bob.requests, bob.waits, bob.open) == (1, [30.0], [])
 
 
-def test_staff_read_who_won_who_waited_and_who_waits_still_longest_first() -> None:
+def test_the_summary_lists_winners_and_waits_longest_first() -> None:
     ann = Attention("Ann", waits=[20.0, 400.0], visits=2, seconds=30.0, won=1)
     bob, cy = Attention("Bob", open=[60.0]), Attention("Cy", waits=[30.0], open=[120.0], visits=1)
     assert attention_lines([ann, bob, cy], str) == [
@@ -125,13 +125,13 @@ def test_staff_read_who_won_who_waited_and_who_waits_still_longest_first() -> No
     ]
 
 
-def test_a_request_that_is_closed_from_afar_was_no_visit() -> None:
+def test_a_request_closed_from_the_front_is_no_visit() -> None:
     replay = replay_of(state(FRONT), state(FRONT, ["ann"]), state(FRONT))
     ann = attention_in(replay)["ann"]
     assert (ann.waits, ann.visits) == ([10.0], 0)
 
 
-def test_who_asks_again_waits_again() -> None:
+def test_a_repeated_request_starts_a_new_wait() -> None:
     replay = replay_of(
         state(FRONT, ["ann"]), state("ann", ["ann"]), state("ann", [], "ann"), state(FRONT),
         state(FRONT, ["ann"]), state("ann", ["ann"]),
@@ -140,20 +140,20 @@ def test_who_asks_again_waits_again() -> None:
     assert (len(ann.waits), ann.visits) == (1, 2)
 
 
-def test_the_way_to_somebody_is_no_time_with_them() -> None:
+def test_the_drive_to_a_person_is_not_visit_time() -> None:
     there = state("ann", ["ann"])
     replay = replay_of(state(FRONT), there, there, there, state(FRONT), target="ann")
     ann = attention_in(replay)["ann"]
     assert (ann.seconds, ann.helped) == (20.0, {"b": 2})
 
 
-def test_who_was_away_all_along_was_not_forgotten_by_anybody() -> None:
+def test_absent_people_are_not_listed_as_unvisited() -> None:
     replay = replay_of(state(FRONT), state(FRONT, ["ann"]), state("ann", ["ann"]))
     replay.game = game(away=frozenset(("ann", "bob")))
     assert list(attention_in(replay)) == ["ann"], "she was there after all"
 
 
-def test_the_log_says_who_was_away_in_a_game(workspace: Workspace, learnt: Policy) -> None:
+def test_the_log_lists_absent_people_of_a_game(workspace: Workspace, learnt: Policy) -> None:
     run = scripted_controller(workspace.supervision(learnt, 5))
     run.apply(GoesAway("user1"))
     run.apply(GoesAway("user2"))
@@ -164,7 +164,7 @@ def test_the_log_says_who_was_away_in_a_game(workspace: Workspace, learnt: Polic
     assert begun.away == {"user2"}
 
 
-def test_names_stand_in_place_of_ids_whatever_stands_beside_them() -> None:
+def test_names_replace_ids_next_to_any_punctuation() -> None:
     told = Noted("told", "Ada", person="user1", detail="tired")
     assert action_words(told, {"user1": "Rosa"}.__getitem__) == "staff told Tangy of Rosa: tired"
     older = Noted("noted", "Ada", detail="staff told of user1: tired; xuser1 is nobody")
@@ -172,14 +172,14 @@ def test_names_stand_in_place_of_ids_whatever_stands_beside_them() -> None:
     assert said == "staff told of Rosa: tired; xuser1 is nobody"
 
 
-def test_games_add_up() -> None:
+def test_attention_of_several_games_adds_up() -> None:
     one = Attention("ann", waits=[1.0], visits=1, seconds=2.0, last_visit=3.0)
     one.add(Attention("ann", open=[9.0], visits=2, seconds=3.0, won=1))
     assert (one.requests, one.longest, one.visits, one.seconds) == (2, 9.0, 3, 5.0)
     assert (one.won, one.last_visit) == (1, 3.0)
 
 
-def test_a_call_that_was_taken_back_stays_and_says_so() -> None:
+def test_a_call_that_was_taken_back_stays_marked_in_the_list() -> None:
     replay = GameReplay(game())
     for number in (7, 8, 7):
         done = Done(
@@ -234,13 +234,13 @@ def test_every_column_of_the_tables_is_in_the_dictionary(played: Workspace) -> N
         assert {row["world"] for row in rows} == {"simulated"}
 
 
-def test_the_tables_name_nobody(played: Workspace) -> None:
+def test_the_tables_contain_no_names(played: Workspace) -> None:
     log = read_log(played.store, {}, {"bingo": played.activity})
     rows = [row for table in TABLES for row in table.of([log])]
     assert not [row for row in rows if "Rosa" in map(str, row.values())]
 
 
-def test_the_tables_say_what_the_log_says(played: Workspace) -> None:
+def test_the_tables_match_the_log(played: Workspace) -> None:
     log = read_log(played.store, {}, {"bingo": played.activity})
     of = {table.name: list(table.of([log])) for table in TABLES}
     assert len(of["games"]) == 2
@@ -249,7 +249,7 @@ def test_the_tables_say_what_the_log_says(played: Workspace) -> None:
     assert len(of["responses"]) == sum(int(row["asked"] or 0) for row in of["people"])
 
 
-def test_one_name_in_two_logs_is_one_person_and_no_name_is_nobody_twice(
+def test_equal_names_in_two_logs_are_one_person(
     played: Workspace,
 ) -> None:
     log = read_log(played.store, {"user2": "User 2"}, {"bingo": played.activity})
@@ -260,7 +260,7 @@ def test_one_name_in_two_logs_is_one_person_and_no_name_is_nobody_twice(
     assert [len(p.games) for p in people if p.name == "User 2"] == [2, 2]
 
 
-def test_the_pages_say_their_world_and_whose_games_they_leave_out(played: Workspace) -> None:
+def test_the_pages_name_their_world_and_the_excluded_games(played: Workspace) -> None:
     log = read_log(played.store, {}, {"bingo": played.activity})
     people = people_over_time(of_world([log], "simulated"))
     page = house_page([log], "simulated", people, ["live"])

@@ -1,4 +1,4 @@
-"""When a fault on the bench could be noticed: what another one hides counts as none that could."""
+"""When a fault on the bench could be noticed; a fault hidden by another could not."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BINGO, PEOPLE = load_activity("bingo"), ("user1", "user2")
 
 
 class FakeBench:
-    """A bench of which only the faults matter."""
+    """A bench reduced to its faults."""
 
     asking: tuple[str, ...] = PEOPLE
 
@@ -52,7 +52,7 @@ def beside_somebody(**faults: str) -> BenchedWorld:
         ("request-withdrawn", {}, {"requests_silent": ""}),
     ],
 )
-def test_a_fault_cannot_show_beside_one_that_hides_it(
+def test_a_fault_hidden_by_another_cannot_show(
     kind: str, shows: dict[str, str], hidden_by: dict[str, str]
 ) -> None:
     action = BINGO.action(BINGO.behaviours["move card closer"], "user1", None)
@@ -60,7 +60,7 @@ def test_a_fault_cannot_show_beside_one_that_hides_it(
     assert not beside_somebody(**hidden_by).can_show(KINDS[kind], action)
 
 
-def test_a_person_who_never_complies_shows_it_at_any_request_about_the_card() -> None:
+def test_a_refusing_person_can_show_at_any_request_about_the_card() -> None:
     for name in ("move card closer", "mark numbers"):
         action = BINGO.action(BINGO.behaviours[name], "user1", None)
         world = beside_somebody()
@@ -76,7 +76,7 @@ def test_a_person_who_never_complies_shows_it_at_any_request_about_the_card() ->
         ({}, ("user2",), False),  # it is down already
     ],
 )
-def test_a_sign_stays_up_only_where_one_is_seen_to_be_up(
+def test_a_stuck_sign_can_show_only_if_a_sign_is_seen(
     silent: dict[str, str],
     asking: tuple[str, ...],
     shows: bool,

@@ -1,4 +1,4 @@
-"""Who is called about what halts a robot: only an answer counts, and all of it is in the log."""
+"""Calls about a halted robot: only an answer counts, and every stage is logged."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def halted(supervise: Supervise, calls: Calls) -> Supervision:
     return game
 
 
-def test_staff_are_called_when_the_robot_halts_and_the_expert_when_staff_turn_to_them(
+def test_a_halt_calls_staff_and_staff_call_the_expert(
     supervise: Supervise, calls: Calls, line: Line
 ) -> None:
     game = halted(supervise, calls)
@@ -69,7 +69,7 @@ def test_staff_are_called_when_the_robot_halts_and_the_expert_when_staff_turn_to
     assert line.messages[1]["fault"] == "link-lost" and line.messages[1]["text"]
 
 
-def test_a_call_that_fails_one_that_is_answered_late_and_by_a_key_are_told_apart(
+def test_failed_late_and_confirmed_calls_are_distinguished(
     supervise: Supervise, calls: Calls, line: Line, workspace: Workspace
 ) -> None:
     game = halted(supervise, calls)
@@ -90,7 +90,7 @@ def test_a_call_that_fails_one_that_is_answered_late_and_by_a_key_are_told_apart
     assert stages == ["tried", "failed", "tried", "sent", "answered"]
 
 
-def test_an_answer_about_an_earlier_fault_says_nothing_of_a_later_one(
+def test_an_answer_about_an_earlier_fault_does_not_count_for_a_later_one(
     supervise: Supervise, calls: Calls, line: Line, workspace: Workspace
 ) -> None:
     game = supervise("link-lost@3", "laser-disconnected@9")
@@ -111,7 +111,7 @@ def test_an_answer_about_an_earlier_fault_says_nothing_of_a_later_one(
 
 
 class SlowButtons:
-    """A chest screen that shows its first offer only after the one behind it, if that can pass."""
+    """A chest screen whose first offer is delayed until a later one could overtake it."""
 
     on_answer: Callable[[str], object]
 
@@ -144,7 +144,7 @@ def test_the_newest_offer_is_the_last_on_the_chest_screen(
     assert buttons.shown[-1] == [], "nobody is called any more"
 
 
-def test_where_nobody_can_be_called_it_is_never_said_that_somebody_was(
+def test_a_robot_without_contacts_reports_no_call(
     supervise: Supervise, workspace: Workspace, line: Line
 ) -> None:
     robot = replace(workspace.robot, expert=Contact("Anna Berg", "030 901820"))
@@ -164,7 +164,7 @@ def test_where_nobody_can_be_called_it_is_never_said_that_somebody_was(
     )  # it is not said that she answered
 
 
-def test_the_outcomes_of_a_call_come_with_the_events_of_the_game(
+def test_the_outcome_of_a_call_is_an_event_of_the_game(
     supervise: Supervise, calls: Calls, line: Line
 ) -> None:
     game = supervise("link-lost@3")
@@ -187,7 +187,7 @@ def test_the_outcomes_of_a_call_come_with_the_events_of_the_game(
     ]
 
 
-def test_an_answer_after_the_game_is_not_told_in_the_next(
+def test_an_answer_after_the_game_is_not_reported_in_the_next(
     supervise: Supervise, calls: Calls, line: Line
 ) -> None:
     game = halted(supervise, calls)
@@ -198,7 +198,7 @@ def test_an_answer_after_the_game_is_not_told_in_the_next(
     assert not [one for one in game.look() if isinstance(one, CallMade)]
 
 
-def test_on_the_bench_people_are_called_if_calls_are_rehearsed_and_the_message_says_so(
+def test_the_bench_calls_people_only_in_a_rehearsal(
     workspace: Workspace, learnt: Policy, tmp_path: Path
 ) -> None:
     kept = tmp_path / "message"
@@ -223,7 +223,7 @@ def test_simulated_games_call_nobody(supervise: Supervise) -> None:
     assert supervise("link-lost@3").calls is None
 
 
-def test_each_stage_of_a_call_has_words_of_its_own(calls: Calls) -> None:
+def test_each_stage_of_a_call_has_its_own_words(calls: Calls) -> None:
     from tangy_tui.monitoring.calls import CallState
 
     stages = ("tried", "sent", "failed", "answered", "reached")
@@ -240,7 +240,7 @@ def test_each_stage_of_a_call_has_words_of_its_own(calls: Calls) -> None:
         ('colour = "red"', "expert"),
     ],
 )
-def test_a_contact_that_is_none_is_refused_by_name(
+def test_an_invalid_contact_is_refused_with_its_key(
     lines: str, key: str, tmp_path: Any, workspace: Workspace
 ) -> None:
     file = tmp_path / "mine.toml"

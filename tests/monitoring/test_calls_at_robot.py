@@ -1,4 +1,4 @@
-"""A call that somebody answers on the robot's chest screen, from the button to the log."""
+"""A call answered on the robot's chest screen, from the button to the log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One bad row in the log costs that row: it is named, left out, and nothing else ends for it."""
+"""A damaged row in the log is named and left out, and breaks nothing else."""
 
 from __future__ import annotations
 
@@ -199,16 +199,14 @@ def _survives(folder: Path, several: list[Callable[[sqlite3.Connection], None]])
 @pytest.mark.slow
 @settings(max_examples=8, deadline=None)  # and 500 in the slow test below
 @given(several=st.lists(damages(), min_size=1, max_size=3))
-def test_no_damage_to_rows_ends_what_reads_the_log(_every_kind: Path, several: Any) -> None:
+def test_damaged_rows_break_no_reader_of_the_log(_every_kind: Path, several: Any) -> None:
     _survives(_every_kind, several)
 
 
 @pytest.mark.slow
 @settings(max_examples=500, deadline=None)
 @given(several=st.lists(damages(), min_size=1, max_size=20))
-def test_no_amount_of_damage_to_rows_ends_what_reads_the_log(
-    _every_kind: Path, several: Any
-) -> None:
+def test_many_damaged_rows_break_no_reader_of_the_log(_every_kind: Path, several: Any) -> None:
     _survives(_every_kind, several)
 
 
@@ -241,7 +239,7 @@ NEEDED = [
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "key", "verb"), NEEDED)
-def test_the_verb_that_meets_a_bad_row_names_it_and_goes_on(
+def test_a_verb_names_a_damaged_row_and_continues(
     every_kind: Path, tangy: Tangy, kind: str, key: str, verb: tuple[str, ...]
 ) -> None:
     seq = seqs(every_kind, kind)[0]
@@ -269,7 +267,7 @@ def test_doctor_and_store_check_name_every_bad_row(every_kind: Path, tangy: Tang
     assert "`tangy store check` names them" in found.text
 
 
-def test_store_check_names_a_step_that_the_activity_does_not_know(
+def test_store_check_names_a_demonstrated_step_unknown_to_the_activity(
     every_kind: Path, tangy: Tangy
 ) -> None:
     step = seqs(every_kind, "demonstration step")[7]
@@ -281,7 +279,7 @@ def test_store_check_names_a_step_that_the_activity_does_not_know(
 
 @pytest.mark.parametrize("kind", ["demonstration step", "game step"])
 @pytest.mark.parametrize(("key", "value"), [("target", "user77"), ("state.users[1][0]", "user78")])
-def test_store_check_names_a_step_that_tells_of_others_than_take_part(
+def test_store_check_names_a_step_with_unknown_people(
     every_kind: Path, tangy: Tangy, kind: str, key: str, value: str
 ) -> None:
     step = seqs(every_kind, kind)[5]
@@ -292,7 +290,7 @@ def test_store_check_names_a_step_that_tells_of_others_than_take_part(
     assert f"event {step} ({kind}): '{value}' took no part in the game." in checked.stdout
 
 
-def test_store_check_names_a_step_of_a_game_that_the_activity_does_not_know(
+def test_store_check_names_a_game_step_unknown_to_the_activity(
     every_kind: Path, tangy: Tangy
 ) -> None:
     step = seqs(every_kind, "game step")[5]
@@ -305,7 +303,7 @@ def test_store_check_names_a_step_of_a_game_that_the_activity_does_not_know(
 @pytest.mark.parametrize(
     ("key", "value"), [("trees", 10**8), ("trees", 0), ("min_samples_leaf", 10**12)]
 )
-def test_a_policy_that_would_take_all_time_or_memory_is_left_out(
+def test_a_policy_with_excessive_settings_is_left_out(
     every_kind: Path, tangy: Tangy, key: str, value: int
 ) -> None:
     kept = seqs(every_kind, "policy learnt")[-1]
@@ -338,15 +336,13 @@ def test_a_policy_with_huge_lists_or_words_is_left_out(
         assert told in ran.stderr and "Traceback" not in ran.stderr
 
 
-def test_a_kind_that_is_not_known_is_named(every_kind: Path, tangy: Tangy) -> None:
+def test_an_unknown_kind_of_event_is_named(every_kind: Path, tangy: Tangy) -> None:
     change(every_kind, "UPDATE event SET kind = 'drlll' WHERE kind = 'drill'")
     checked = tangy("store", "check", "--data", every_kind)
     assert (checked.returncode, "'drlll' are not known" in checked.stdout) == (1, True)
 
 
-def test_a_method_that_is_not_known_is_not_taken_for_another(
-    every_kind: Path, tangy: Tangy
-) -> None:
+def test_an_unknown_method_is_left_out(every_kind: Path, tangy: Tangy) -> None:
     chosen = seqs(every_kind, "method chosen")[-1]
     body = json.dumps({"chosen": {"method": "thomson"}})
     change(every_kind, "UPDATE event SET body = ? WHERE seq = ?", body, chosen)
@@ -365,7 +361,7 @@ def steps_of(folder: Path, place: int) -> list[int]:
         return [step.id for step in entry.demonstration.steps]
 
 
-def test_taking_back_a_step_that_is_left_out_takes_no_other_back(every_kind: Path) -> None:
+def test_undoing_a_damaged_step_undoes_no_other(every_kind: Path) -> None:
     """The last demonstration had two steps undone and the first of these redone."""
     first, _ = seqs(every_kind, "demonstration step undone")
     with Store.open(every_kind, write=False) as store:
@@ -376,7 +372,7 @@ def test_taking_back_a_step_that_is_left_out_takes_no_other_back(every_kind: Pat
     assert steps_of(every_kind, 3) == [seq for seq in before if seq != chain[1].seq]
 
 
-def test_an_edit_that_was_undone_is_the_one_that_is_meant(every_kind: Path) -> None:
+def test_an_undo_belongs_to_its_edit_despite_damage(every_kind: Path) -> None:
     """The split was undone and redone: where the split is left out, the merge stays as it was."""
     merge, split, *_ = seqs(every_kind, "demonstrations edited")
     undone = seqs(every_kind, "demonstrations edit undone")[0]
@@ -408,14 +404,14 @@ def test_the_last_event_of_a_kind_is_the_last_that_can_be_read(every_kind: Path)
         assert found is not None and found.seq == before
 
 
-def test_a_row_far_beyond_all_others_keeps_nobody_waiting(every_kind: Path) -> None:
+def test_a_row_with_a_huge_number_is_read_at_once(every_kind: Path) -> None:
     (seq,) = seqs(every_kind, "drill")
     change(every_kind, "UPDATE event SET seq = ? WHERE seq = ?", 2**62, seq)
     with Store.open(every_kind, write=False) as store:
         assert [event.seq for event in store.events()][-1] == 2**62
 
 
-def test_what_cannot_be_read_back_is_not_written(tmp_path: Path) -> None:
+def test_an_invalid_event_is_not_written(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         with pytest.raises(ValueError, match="has no 'seed'"):
             append_body(

@@ -1,4 +1,4 @@
-"""Detection: what is unexpected is noticed at once, what people owe is no fault, age tells."""
+"""Detection: unexpected effects are noticed at once; a refusal is no fault; old data is stale."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def detector(workspace: Workspace) -> Detector:
     return Detector(workspace.activity, workspace.robot, Effects({}))
 
 
-def test_a_hidden_card_is_a_refusal_only_of_somebody_who_refused_in_a_whole_visit(
+def test_a_hidden_card_counts_as_a_refusal_only_after_a_refused_visit(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     settles = {"what was asked about": frozenset({"settled"})}
@@ -73,19 +73,17 @@ def test_the_simulated_body_has_the_devices_of_the_robot() -> None:
 
 
 @pytest.mark.parametrize("device", sorted(READINGS))
-def test_a_device_is_stale_by_the_age_of_its_data_and_not_before(
-    detector: Detector, device: str
-) -> None:
+def test_a_device_is_stale_above_its_maximum_age(detector: Detector, device: str) -> None:
     allowed = load_robot().devices[device].stale_after
     assert detector.state(Reading(device, allowed)) == "OK"
     assert detector.state(Reading(device, allowed * 1.01)) == "STALE"
 
 
-def test_what_a_device_says_is_an_error_is_not_called_stale(detector: Detector) -> None:
+def test_an_error_of_a_device_takes_precedence_over_its_age(detector: Detector) -> None:
     assert detector.state(Reading("voice", 60.0, "ERROR")) == "ERROR"
 
 
-def test_the_same_readings_are_looked_at_once(detector: Detector) -> None:
+def test_equal_readings_are_evaluated_once(detector: Detector) -> None:
     assert detector.watch(WELL) is detector.watch(WELL)
     assert not symptoms(detector.watch(WELL))
 
@@ -98,7 +96,7 @@ def test_the_worst_state_names_its_cause(detector: Detector) -> None:
     assert detector.worst((silent, failed)) == ("ERROR", "voice")
 
 
-def test_games_without_faults_are_those_of_the_plain_world(workspace: Workspace) -> None:
+def test_a_faulty_world_without_faults_equals_the_simulated_world(workspace: Workspace) -> None:
     people = [person.id for person in workspace.people]
     plain = SimulatedWorld(workspace.activity, people, seed=5)
     faulty = FaultyWorld(workspace.activity, people, seed=5)
@@ -114,7 +112,7 @@ def test_games_without_faults_are_those_of_the_plain_world(workspace: Workspace)
 
 
 @pytest.mark.slow
-def test_nothing_is_found_in_games_in_which_nothing_is_wrong(supervise: Supervise) -> None:
+def test_correct_games_have_no_fault(supervise: Supervise) -> None:
     game = supervise(seed=11)
     for _ in range(40):
         assert not codes(play(game))
@@ -122,7 +120,7 @@ def test_nothing_is_found_in_games_in_which_nothing_is_wrong(supervise: Supervis
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))
-def test_every_kind_is_noticed_in_the_step_in_which_it_can_show(
+def test_every_kind_of_fault_is_noticed_in_its_first_visible_step(
     supervise: Supervise, kind: str
 ) -> None:
     game = supervise(kind, seed=2)
@@ -134,7 +132,7 @@ def test_every_kind_is_noticed_in_the_step_in_which_it_can_show(
     assert first.step == step + (2 if kind == "never-complies" else 0)  # after the third refusal
 
 
-def test_a_person_who_does_not_follow_is_no_fault_before_it_repeats(supervise: Supervise) -> None:
+def test_a_single_refusal_is_no_fault(supervise: Supervise) -> None:
     game = supervise("never-complies", seed=2)
     game.begin()
     events = until(game, lambda now: now.faults)
@@ -146,7 +144,7 @@ def test_a_person_who_does_not_follow_is_no_fault_before_it_repeats(supervise: S
     assert world_of(game).observe().user(str(game.faults[0].person)).request == "ANR"
 
 
-def test_a_mismatch_says_variable_expected_and_seen(supervise: Supervise) -> None:
+def test_a_mismatch_names_variable_expected_and_observed_value(supervise: Supervise) -> None:
     game = supervise("base-stuck", seed=2)
     game.begin()
     until(game, lambda now: now.halted)
@@ -156,7 +154,7 @@ def test_a_mismatch_says_variable_expected_and_seen(supervise: Supervise) -> Non
     assert "Tangy is at the front, and should be with the person who asked" in game.faults[0].why
 
 
-def test_what_is_brought_about_by_hand_is_seen_at_the_next_look(supervise: Supervise) -> None:
+def test_an_injected_fault_is_noticed_at_the_next_look(supervise: Supervise) -> None:
     game = supervise(seed=2)
     game.begin()
     game.step()
@@ -167,7 +165,7 @@ def test_what_is_brought_about_by_hand_is_seen_at_the_next_look(supervise: Super
     assert game.halted is game.faults[0]
 
 
-def test_what_nobody_has_demonstrated_at_all_cannot_be_unexpected(
+def test_undemonstrated_behaviours_have_no_unexpected_effects(
     workspace: Workspace, learnt: Policy, supervise: Supervise
 ) -> None:
     game = supervise(seed=2)
@@ -190,7 +188,7 @@ def test_what_nobody_has_demonstrated_at_all_cannot_be_unexpected(
         ("voice", "did you mean 'voice-dead'?"),
     ],
 )
-def test_an_injection_that_is_none_says_why(text: str, says: str) -> None:
+def test_an_invalid_injection_is_refused_with_the_reason(text: str, says: str) -> None:
     with pytest.raises(TangyError) as wrong:
         read_injection(text)
     assert says in str(wrong.value)
@@ -200,11 +198,11 @@ def test_an_injection_that_is_none_says_why(text: str, says: str) -> None:
 @pytest.mark.parametrize(
     "text", ["base-stuck", "voice-dead@12", "arm-failed~0.25", "voice-dead@recovery"]
 )
-def test_an_injection_is_written_as_it_is_read(text: str) -> None:
+def test_an_injection_is_written_back_unchanged(text: str) -> None:
     assert str(read_injection(text)) == text
 
 
-def test_a_game_that_goes_round_in_circles_asks_the_teacher(supervise: Supervise) -> None:
+def test_a_game_without_progress_asks_the_teacher(supervise: Supervise) -> None:
     """A policy that tells jokes where numbers should be called: nothing ever changes by it."""
     game = supervise(seed=2)
     policy = game.policy
@@ -220,11 +218,11 @@ def test_a_game_that_goes_round_in_circles_asks_the_teacher(supervise: Supervise
     assert game.steps < 12
 
 
-def test_the_name_of_a_kind_may_be_written_in_capitals() -> None:
+def test_names_of_faults_are_read_in_any_case() -> None:
     assert read_injection("Base-Stuck@3").kind is KINDS["base-stuck"]
 
 
-def test_what_falls_silent_just_before_the_link_does_is_not_blamed() -> None:
+def test_a_device_silent_just_before_the_link_is_not_blamed() -> None:
     robot = load_robot()
 
     def of(link: float, laser: float, camera: float = 0.01) -> Evidence:
@@ -243,7 +241,7 @@ def test_what_falls_silent_just_before_the_link_does_is_not_blamed() -> None:
     assert both["link.state"] == both["laser.state"] == STALE
 
 
-def test_a_scanner_that_says_itself_that_it_has_no_data_is_believed_on_a_quiet_link() -> None:
+def test_a_device_that_reports_stale_data_is_believed_on_a_quiet_link() -> None:
     robot = load_robot()
     ages = {"link": robot.devices["link"].lost_after - 0.05}
     health = tuple(
@@ -253,7 +251,7 @@ def test_a_scanner_that_says_itself_that_it_has_no_data_is_believed_on_a_quiet_l
     assert device_evidence(robot, health)["laser.state"] == STALE
 
 
-def test_data_that_is_late_is_told_and_is_no_symptom_before_it_counts_as_lost() -> None:
+def test_late_data_is_reported_but_no_symptom() -> None:
     robot = load_robot()
     detector = Detector(load_activity("bingo"), robot, Effects({}))
 

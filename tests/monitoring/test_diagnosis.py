@@ -39,28 +39,28 @@ def diagnosed(found: dict[str, Fact], book: FaultBook = BOOK) -> list[str]:
     return [diagnosis.rule.code for diagnosis in diagnose(book, found)]
 
 
-def test_when_all_is_well_nothing_is_diagnosed() -> None:
+def test_a_healthy_robot_has_no_diagnosis() -> None:
     assert diagnosed(evidence()) == []
 
 
 @pytest.mark.parametrize("kind", SHOWING)
-def test_what_devices_show_has_one_explanation(kind: str) -> None:
+def test_each_device_fault_has_one_diagnosis(kind: str) -> None:
     assert diagnosed(evidence(kind)) == [KINDS[kind].code]
 
 
-def test_a_lost_link_is_one_fault_and_not_eleven() -> None:
+def test_a_lost_link_is_one_fault() -> None:
     found = evidence("link-lost")
     assert len(symptoms(found)) == len(ROBOT.devices)
     assert diagnosed(found) == ["link-lost"]
 
 
-def test_neither_voice_nor_screen_is_worse_than_either() -> None:
+def test_a_robot_without_voice_and_screen_is_mute() -> None:
     assert diagnosed(evidence("voice-dead", "screen-dead")) == ["mute"]
 
 
 @pytest.mark.slow
 @given(st.sets(st.sampled_from(SHOWING), min_size=1, max_size=5))
-def test_the_critical_one_comes_first_and_none_is_lost(kinds: set[str]) -> None:
+def test_diagnoses_are_sorted_by_urgency_and_complete(kinds: set[str]) -> None:
     found = evidence(*kinds)
     told = diagnose(BOOK, found)
     urgencies = [diagnosis.rule.urgency for diagnosis in told]
@@ -79,7 +79,7 @@ def test_the_critical_one_comes_first_and_none_is_lost(kinds: set[str]) -> None:
         st.one_of(st.booleans(), st.floats(-10, 10), st.sampled_from(["STALE", "ERROR", "none"])),
     )
 )
-def test_whatever_is_seen_every_symptom_is_explained_once(found: dict[str, Fact]) -> None:
+def test_every_symptom_is_explained_once(found: dict[str, Fact]) -> None:
     told = diagnose(BOOK, found)
     assert len({d.rule.code for d in told}) == len(told)
     left = symptoms(found)
@@ -88,7 +88,7 @@ def test_whatever_is_seen_every_symptom_is_explained_once(found: dict[str, Fact]
     assert not left
 
 
-def test_what_no_rule_explains_asks_the_teacher_and_says_what_was_seen() -> None:
+def test_an_unexplained_symptom_asks_the_teacher_with_its_evidence() -> None:
     mismatch = Mismatch("call number", "others' requests", ("kept",), "none left")
     (told,) = diagnose(BOOK, {"mismatch.others' requests": "none left"}, [mismatch])
     assert told.rule is BOOK.fallback
@@ -99,7 +99,7 @@ def test_what_no_rule_explains_asks_the_teacher_and_says_what_was_seen() -> None
     )
 
 
-def test_a_mismatch_belongs_to_the_fault_that_explains_it() -> None:
+def test_each_mismatch_is_listed_with_its_fault() -> None:
     place = Mismatch("navigate to user", "robot's place", ("with the person who asked",), "front")
     other = Mismatch("navigate to user", "others' requests", ("kept",), "fewer")
     found = {
@@ -111,7 +111,7 @@ def test_a_mismatch_belongs_to_the_fault_that_explains_it() -> None:
     assert told == {"path-blocked": (place,), "request-withdrawn": (other,)}
 
 
-def test_staff_read_whom_to_call_or_that_nobody_is_named() -> None:
+def test_staff_see_the_expert_or_that_none_is_named() -> None:
     nobody = load_robot()
     assert whom_to_call(nobody).startswith("No expert is named")
     named = replace(nobody, expert=Contact("Anna Berg", "030 901820"))
@@ -157,7 +157,7 @@ FEWER = {"mismatch.others' requests": "fewer"}
     ],
     ids=["broken off by it", "carried out all the same", "not critical"],
 )
-def test_nothing_was_to_be_expected_of_what_a_critical_fault_broke_off_but_of_others(
+def test_only_a_critical_fault_explains_an_interrupted_behaviour(
     critical: bool, completed: bool, left: set[str]
 ) -> None:
     mine = rule("dead", FAILED, criticality="critical" if critical else "non-critical")
@@ -173,20 +173,20 @@ def test_nothing_was_to_be_expected_of_what_a_critical_fault_broke_off_but_of_ot
     assert "mismatch.card" not in told["dead"].evidence
 
 
-def test_what_a_critical_fault_broke_off_alone_is_one_fault() -> None:
+def test_a_behaviour_interrupted_by_a_critical_fault_is_one_fault() -> None:
     mine = rule("dead", FAILED, criticality="critical")
     found: dict[str, Fact] = {"base.state": "ERROR", **PLACE, "behaviour.completed": False}
     assert diagnosed(found, book(mine)) == ["dead"]
 
 
-def test_what_a_critical_fault_leaves_for_later_rules_is_theirs() -> None:
+def test_later_rules_explain_what_a_critical_fault_does_not() -> None:
     first = rule("dead", FAILED, criticality="critical")
     later = rule("left", Condition("mismatch.others' requests", "is", "fewer"))
     found: dict[str, Fact] = {"base.state": "ERROR", **PLACE, **FEWER, "behaviour.completed": False}
     assert sorted(diagnosed(found, book(first, later))) == ["dead", "left"]
 
 
-def test_the_most_urgent_comes_first_and_else_the_order_of_the_book() -> None:
+def test_diagnoses_are_sorted_by_urgency_and_the_order_of_rules() -> None:
     calm, asks = rule("calm", FAILED), rule("asks", Condition("voice.state", "is", "ERROR"))
     stops = rule("stops", Condition("link.state", "is", "ERROR"), recovery=("expert",))
     again = rule("again", Condition("arms.state", "is", "ERROR"))
@@ -203,7 +203,7 @@ def test_the_most_urgent_comes_first_and_else_the_order_of_the_book() -> None:
     ]
 
 
-def test_what_an_earlier_rule_explained_is_no_further_fault() -> None:
+def test_a_symptom_explained_by_an_earlier_rule_is_no_further_fault() -> None:
     first = rule("first", FAILED, also=("voice.state",))
     second = rule("second", Condition("voice.state", "is", "ERROR"))
     found: dict[str, Fact] = {"base.state": "ERROR", "voice.state": "ERROR"}
@@ -211,7 +211,7 @@ def test_what_an_earlier_rule_explained_is_no_further_fault() -> None:
     assert diagnosed({"voice.state": "ERROR"}, book(first, second)) == ["second"]
 
 
-def test_evidence_is_what_was_recognised_with_the_age_of_the_device() -> None:
+def test_the_evidence_includes_the_age_of_the_device() -> None:
     found: dict[str, Fact] = {
         "base.state": "ERROR",
         "base.age": 2.5,
@@ -242,7 +242,7 @@ STALE, NOT_STALE = Condition("link.state", "is", "STALE"), Condition("link.state
         ((FAILED, BELOW), (Condition("laser.fit", "above", 0.8),), set()),
     ],
 )
-def test_a_condition_only_says_which_fault_it_is_not_where_another_rule_has_its_contrary(
+def test_a_condition_is_excluding_only_if_another_rule_has_its_opposite(
     mine: tuple[Condition, ...], others: tuple[Condition, ...], beside: set[str]
 ) -> None:
     rules = book(rule("mine", *mine), rule("other", *others))
@@ -255,7 +255,7 @@ def test_a_condition_only_says_which_fault_it_is_not_where_another_rule_has_its_
         assert told["mine"].beside == beside
 
 
-def test_in_what_company_something_was_seen_makes_no_fault_of_what_is_explained() -> None:
+def test_context_facts_create_no_fault_from_an_explained_symptom() -> None:
     first = rule("first", FAILED, also=("voice.state",))
     drawn = Condition("behaviour.effect", "is", "draw")
     second = rule("second", Condition("voice.state", "is", "ERROR"), drawn)
@@ -267,7 +267,7 @@ def test_in_what_company_something_was_seen_makes_no_fault_of_what_is_explained(
     assert diagnosed(found, book(first, second)) == ["first"]
 
 
-def test_a_mismatch_belongs_to_one_fault_only_the_first_that_explains_it() -> None:
+def test_a_mismatch_belongs_to_the_first_fault_that_explains_it() -> None:
     first = rule("first", FAILED, also=("mismatch.card",))
     second = rule("second", Condition("voice.state", "is", "ERROR"), also=("mismatch.card",))
     card = Mismatch("mark numbers", "card", (), "bingo")

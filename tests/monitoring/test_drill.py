@@ -1,4 +1,4 @@
-"""Drills: rounds that really happen, what is right in them, and the score that is kept."""
+"""Drills: simulated rounds, their correct answers, and the stored score."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ KINDS = round_kinds(BOOK)
 
 
 class Clock:
-    """A clock that goes on only when it is told to."""
+    """A clock that the test advances."""
 
     now = 100.0
 
@@ -92,7 +92,7 @@ def right_keys(drill: Drill) -> list[str]:
 
 
 @pytest.mark.parametrize("rounds", range(1, 51))
-def test_every_class_comes_up_and_nothing_twice_before_all_have_come(rounds: int) -> None:
+def test_rounds_cover_every_class_before_a_fault_repeats(rounds: int) -> None:
     for seed in range(20):
         drawn = draw_rounds(BOOK, rounds, Random(seed))
         assert len(drawn) == rounds
@@ -122,7 +122,7 @@ def test_different_seeds_draw_different_drills() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
-def test_each_kind_of_fault_is_seen_and_alone(table: DrillSimulator, kind: RoundKind) -> None:
+def test_each_round_shows_exactly_its_fault(table: DrillSimulator, kind: RoundKind) -> None:
     shown = table.play(3, kind, Random(1))
     rule = BOOK.rule(kind.code)
     assert (shown.number, shown.kind, shown.rule) == (3, kind, rule)
@@ -161,7 +161,7 @@ def test_no_round_is_at_the_end_of_its_game(
 
 
 @pytest.mark.slow
-def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: DrillSimulator) -> None:
+def test_a_round_reveals_neither_the_fault_nor_its_recovery(table: DrillSimulator) -> None:
     for kind in KINDS:
         shown = table.play(1, kind, Random(2))
         assert shown.rule is not None
@@ -173,7 +173,7 @@ def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: DrillSimu
 
 
 @pytest.mark.slow
-def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(
+def test_a_quiet_round_shows_a_distraction_without_a_fault(
     table: DrillSimulator,
 ) -> None:
     rounds = [table.play(1, QUIET, Random(seed)) for seed in range(24)]
@@ -186,7 +186,7 @@ def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(
 
 
 @pytest.mark.slow
-def test_whether_tangy_may_be_cleared_is_what_clearing_it_comes_to(table: DrillSimulator) -> None:
+def test_the_correct_answer_on_clearing_matches_the_supervision(table: DrillSimulator) -> None:
     critical = [kind for kind in KINDS if BOOK.rule(kind.code).critical]
     right = Counter[bool]()
     for seed in range(3):
@@ -213,7 +213,7 @@ def test_the_same_seed_gives_the_same_rounds(table: DrillSimulator, store: Store
     assert seen() == seen()
 
 
-def test_what_cannot_come_about_is_replaced_by_something_of_its_class(
+def test_an_impossible_round_is_replaced_by_one_of_its_class(
     table: DrillSimulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = next(kind for kind in KINDS if BOOK.rule(kind.code).recovery[0] == "user")
@@ -234,16 +234,14 @@ def test_what_cannot_come_about_is_replaced_by_something_of_its_class(
 # ----------------------------------------------------------------------------------- the policy
 
 
-def test_a_fresh_installation_is_taught_for_the_drill_and_nothing_of_it_is_kept(
-    store: Store, activity: Activity
-) -> None:
+def test_a_fresh_installation_gets_a_temporary_policy(store: Store, activity: Activity) -> None:
     found = policy_for_drill(store, activity)
     assert found.note == "nothing learnt"
     assert all(found.policy.decide(situation).sure for situation in activity.situations)
     assert list(store.events()) == []
 
 
-def test_a_policy_with_gaps_or_that_is_lost_is_not_drilled_with(
+def test_a_drill_replaces_an_incomplete_or_lost_policy(
     store: Store, activity: Activity, learnt: DrillPolicy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep_policy(store, replace(learnt.policy, demonstrations=("gone",)))
@@ -263,7 +261,7 @@ def test_a_policy_with_gaps_or_that_is_lost_is_not_drilled_with(
     assert (found.policy.name, found.note) == ("whole", None)
 
 
-def test_an_activity_that_expects_nothing_must_be_taught_first(
+def test_an_activity_without_expected_behaviours_must_be_taught_first(
     store: Store, activity: Activity
 ) -> None:
     with pytest.raises(TangyError, match="Teach Tangy Bingo first"):
@@ -273,7 +271,7 @@ def test_an_activity_that_expects_nothing_must_be_taught_first(
 # ---------------------------------------------------------------------------- answers and score
 
 
-def test_right_answers_get_every_point_and_only_the_sheet_is_kept(
+def test_right_answers_score_fully_and_only_the_sheet_is_stored(
     table: DrillSimulator, store: Store
 ) -> None:
     clock = Clock()
@@ -298,9 +296,7 @@ def test_right_answers_get_every_point_and_only_the_sheet_is_kept(
     assert len(list(store.events(DrillHeld))) == 1, "it is kept once"
 
 
-def test_a_drill_that_was_interrupted_goes_on_with_the_rounds_it_would_have_had(
-    table: DrillSimulator, store: Store
-) -> None:
+def test_a_resumed_drill_has_the_original_rounds(table: DrillSimulator, store: Store) -> None:
     whole = Drill(table, store, who="ada", seed=2, rounds=4)
     shown = []
     while (one := whole.next()) is not None:
@@ -328,7 +324,7 @@ def test_a_drill_that_was_interrupted_goes_on_with_the_rounds_it_would_have_had(
     assert after.sheet.finished and interrupted_sheet(store, "bea", "bingo") is None
 
 
-def test_an_interrupted_drill_that_is_not_wanted_is_kept_unfinished(
+def test_a_rejected_interrupted_drill_is_stored_as_unfinished(
     table: DrillSimulator, store: Store
 ) -> None:
     drill = Drill(table, store, who="ada", seed=2, rounds=4)
@@ -341,7 +337,7 @@ def test_an_interrupted_drill_that_is_not_wanted_is_kept_unfinished(
     assert [len(sheet.answered) for sheet in read_sheets(store, "ada")] == [1]
 
 
-def test_each_wrong_answer_costs_its_point(table: DrillSimulator, store: Store) -> None:
+def test_each_wrong_answer_loses_its_point(table: DrillSimulator, store: Store) -> None:
     drill = Drill(table, store, who="ada", seed=2, rounds=4)
     while (shown := drill.next()) is not None:
         answered = None
@@ -367,7 +363,7 @@ def test_each_wrong_answer_costs_its_point(table: DrillSimulator, store: Store) 
     assert all(one.advice for one in sheet.again if one.code)
 
 
-def test_the_time_begins_when_the_round_can_be_read(table: DrillSimulator, store: Store) -> None:
+def test_the_time_starts_when_the_round_is_shown(table: DrillSimulator, store: Store) -> None:
     clock = Clock()
     drill = Drill(table, store, who="ada", seed=1, rounds=1, clock=clock)
     drill.next()
@@ -381,7 +377,7 @@ def test_the_time_begins_when_the_round_can_be_read(table: DrillSimulator, store
     assert drill.sheet.answered[0].seconds == 6
 
 
-def test_a_drill_that_is_left_keeps_what_was_answered(table: DrillSimulator, store: Store) -> None:
+def test_leaving_a_drill_keeps_its_answers(table: DrillSimulator, store: Store) -> None:
     drill = Drill(table, store, who="ada", seed=1, rounds=5)
     assert drill.leave() is None
     assert last_sheet(store) is None
@@ -397,7 +393,7 @@ def test_a_drill_that_is_left_keeps_what_was_answered(table: DrillSimulator, sto
     assert "left after 1 of 5" in sheet_lines(kept)[0][1]
 
 
-def test_what_is_no_answer_is_refused(table: DrillSimulator, store: Store) -> None:
+def test_an_invalid_answer_is_refused(table: DrillSimulator, store: Store) -> None:
     drill = Drill(table, store, who="ada", seed=1, rounds=1)
     with pytest.raises(TangyError, match="Nothing is asked"):
         drill.answer("1")
@@ -410,9 +406,7 @@ def test_what_is_no_answer_is_refused(table: DrillSimulator, store: Store) -> No
             Drill(table, store, who="ada", rounds=rounds)
 
 
-def test_without_a_seed_no_drill_is_like_an_earlier_one(
-    table: DrillSimulator, store: Store
-) -> None:
+def test_a_drill_without_a_seed_gets_a_new_one(table: DrillSimulator, store: Store) -> None:
     for expected in (1, 2, 3):
         drill = Drill(table, store, who="ada", rounds=1)
         assert drill.sheet.seed == expected
@@ -420,9 +414,7 @@ def test_without_a_seed_no_drill_is_like_an_earlier_one(
         right_keys(drill)
 
 
-def test_what_the_same_person_had_the_last_time_is_told(
-    table: DrillSimulator, store: Store
-) -> None:
+def test_the_last_score_of_the_same_person_is_shown(table: DrillSimulator, store: Store) -> None:
     first = Drill(table, store, who="ada", rounds=1)
     assert first.before is None
     first.next()
@@ -436,7 +428,7 @@ def test_what_the_same_person_had_the_last_time_is_told(
 
 
 @pytest.mark.slow
-def test_no_name_of_a_person_gets_into_the_log(
+def test_the_log_of_a_drill_contains_no_names(
     learnt: DrillPolicy, store: Store, activity: Activity
 ) -> None:
     names = {f"user{number}": f"Xaver{number}" for number in range(1, 5)}
@@ -466,7 +458,7 @@ SHEET = Sheet(
 
 
 @pytest.mark.parametrize("width", [54, 74, 120])
-def test_the_sheet_is_a_table_that_fits(width: int) -> None:
+def test_the_score_sheet_fits_the_width(width: int) -> None:
     lines = [text for _, text in sheet_lines(SHEET, width)]
     assert lines[0] == "ada: 3 of 5 points. Median time 6 s."
     assert lines[2].split()[-4:] == ["yes", "NO", "NO", "8"]
@@ -479,7 +471,7 @@ def test_the_sheet_is_a_table_that_fits(width: int) -> None:
     assert all(len(line) <= width for line in lines[:6])
 
 
-def test_a_sheet_survives_the_log(store: Store) -> None:
+def test_a_score_sheet_is_read_back_from_the_log(store: Store) -> None:
     append_body(store, DrillHeld, encode(SHEET))
     (kept,) = read_sheets(store, "ADA")
     assert replace(kept, at=SHEET.at) == SHEET
@@ -491,14 +483,14 @@ def test_a_sheet_survives_the_log(store: Store) -> None:
     assert sheets_lines([], str) == ["No drill yet: tangy drill begins one."]
 
 
-def test_devices_are_told_by_the_ill_ones() -> None:
+def test_the_summary_of_devices_lists_faulty_ones() -> None:
     assert device_words([("a", "OK"), ("b", "OK")]) == "None reports an error."
     assert device_words([("a", "STALE"), ("b", "STALE")]) == "all 2: no data."
     mixed = device_words([("a", "ERROR"), ("b", "OK"), ("c", "STALE")])
     assert mixed == ("a: failed; c: no data; no error from the other 1 device.")
 
 
-def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(
+def test_an_invalid_line_is_asked_again_until_the_input_ends(
     table: DrillSimulator, store: Store
 ) -> None:
     drill = Drill(table, store, who="ada", seed=3, rounds=4)
@@ -512,7 +504,7 @@ def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(
 
 
 @pytest.mark.parametrize("strict", [False, True])
-def test_by_lines_who_says_stop_hears_that_nothing_moves(
+def test_stop_by_lines_says_that_nothing_moves(
     table: DrillSimulator, store: Store, strict: bool
 ) -> None:
     told: list[str] = []
@@ -523,7 +515,7 @@ def test_by_lines_who_says_stop_hears_that_nothing_moves(
     assert not any(line.startswith("Type the number") for line in told)
 
 
-def test_in_a_script_a_slip_ends_it_and_what_was_answered_stays(
+def test_an_invalid_line_ends_a_script_and_keeps_the_answers(
     table: DrillSimulator, store: Store
 ) -> None:
     drill = Drill(table, store, who="ada", seed=3, rounds=4)

@@ -1,4 +1,4 @@
-"""What the execution of a behaviour gives as evidence: who refused how often, what led nowhere."""
+"""Evidence from the execution of a behaviour: counts of refusals and of steps without progress."""
 
 from __future__ import annotations
 
@@ -62,14 +62,14 @@ def evidence(detector: Detector, step: Acted) -> Evidence:
     return detector.compare(step)[0]
 
 
-def test_refusals_are_counted_in_a_row_and_end_with_what_is_done(detector: Detector) -> None:
+def test_consecutive_refusals_are_counted_until_a_success(detector: Detector) -> None:
     no = acted("mark numbers", HELP, did("user1", followed=False), changed=True)
     yes = acted("mark numbers", HELP, did("user1", followed=True, complied=True), changed=True)
     counted = [evidence(detector, step).get("person.refusals") for step in (no, no, yes, no)]
     assert counted == [1, 2, None, 1]
 
 
-def test_a_refusal_is_told_of_whoever_is_attended_and_of_nobody_else(detector: Detector) -> None:
+def test_a_refusal_counts_only_for_the_attended_person(detector: Detector) -> None:
     detector.compare(acted("mark numbers", HELP, did("user1", followed=False), changed=True))
     users = (UserState("user1", "occluded", "ANR"), UserState("user2", "occluded", "AR"))
     other = HELP._replace(attended="user2", place="user2", users=users)
@@ -104,32 +104,32 @@ def test_who_refused_in_a_whole_visit_counts_as_refusing_until_something_ends_it
     assert unexpected()
 
 
-def test_a_step_after_which_nothing_is_amiss_gives_no_evidence(detector: Detector) -> None:
+def test_a_successful_step_gives_no_evidence(detector: Detector) -> None:
     assert evidence(detector, acted("navigate to user", HELP, changed=True)) == {}
 
 
-def test_what_changes_nothing_is_counted_until_something_changes(detector: Detector) -> None:
+def test_steps_without_a_change_are_counted_until_a_change(detector: Detector) -> None:
     idle, moved = acted("joke", QUIET), acted("joke", QUIET, changed=True)
     steps = (idle, idle, idle, moved, idle)
     counted = [evidence(detector, step).get("visit.fruitless") for step in steps]
     assert counted == [1, 2, 3, None, 1]
 
 
-def test_a_call_leads_on_although_no_state_changes(detector: Detector) -> None:
+def test_a_call_counts_as_progress_without_a_change_of_state(detector: Detector) -> None:
     called = acted("call number", QUIET, numbers=(5,))
     assert evidence(detector, acted("joke", QUIET))["visit.fruitless"] == 1
     assert "visit.fruitless" not in evidence(detector, called)
     assert evidence(detector, acted("joke", QUIET))["visit.fruitless"] == 1, "it begins anew"
 
 
-def test_what_people_undo_at_once_still_led_on(detector: Detector) -> None:
+def test_a_change_that_is_undone_at_once_counts_as_progress(detector: Detector) -> None:
     idle = acted("joke", QUIET)
     led = replace(idle, outcome=idle.outcome._replace(led_on=True))
     counted = [evidence(detector, step).get("visit.fruitless") for step in (idle, led, idle)]
     assert counted == [1, None, 1]
 
 
-def test_numbers_that_somebody_was_asked_about_do_not_lead_on(detector: Detector) -> None:
+def test_requested_numbers_do_not_count_as_progress(detector: Detector) -> None:
     asked = acted("mark numbers", HELP, did("user1", followed=True), numbers=(5, 9))
     assert evidence(detector, asked)["visit.fruitless"] == 1
 
@@ -143,7 +143,7 @@ def test_numbers_that_somebody_was_asked_about_do_not_lead_on(detector: Detector
         (did("user1", followed=True), "late"),
     ],
 )
-def test_what_the_person_did_is_said_in_a_word(
+def test_the_evidence_describes_the_response_in_a_word(
     detector: Detector, response: Response | None, word: str
 ) -> None:
     behaviour = "mark numbers" if response is not None else "navigate to user"
@@ -154,7 +154,7 @@ def test_what_the_person_did_is_said_in_a_word(
     assert told["behaviour.completed"] is (response is not None)
 
 
-def test_a_new_game_begins_without_the_counts_of_the_last(detector: Detector) -> None:
+def test_a_new_game_resets_the_counts(detector: Detector) -> None:
     refused = acted("mark numbers", HELP, did("user1", followed=False))
     first = evidence(detector, refused)
     assert (first["person.refusals"], first["visit.fruitless"]) == (1, 1)
@@ -162,7 +162,7 @@ def test_a_new_game_begins_without_the_counts_of_the_last(detector: Detector) ->
     assert evidence(detector, refused) == first
 
 
-def test_forgiving_somebody_ends_their_count_and_no_other(detector: Detector) -> None:
+def test_forgiving_a_person_resets_only_their_count(detector: Detector) -> None:
     one = acted("mark numbers", HELP, did("user1", followed=False), changed=True)
     users = (UserState("user1", "occluded", "ANR"), UserState("user2", "missing numbers", "AR"))
     other = HELP._replace(attended="user2", place="user2", users=users)

@@ -1,4 +1,4 @@
-"""People who do not do what they are asked, seen or unseen, are left in peace."""
+"""Limits of requests: people who do not comply, seen or unseen, are left in peace."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MOST = 3
 
 @pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])
 @pytest.mark.parametrize("seed", range(1, 9))
-def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
+def test_a_visit_has_at_most_three_requests_in_vain(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str, seed: int
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -39,7 +39,7 @@ def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
 
 
 @pytest.mark.parametrize("seed", range(1, 13))
-def test_what_went_out_of_sight_after_a_request_counts_as_one_of_the_three(
+def test_a_card_hidden_after_a_request_counts_as_in_vain(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -51,7 +51,7 @@ def test_what_went_out_of_sight_after_a_request_counts_as_one_of_the_three(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("beside", ["arm-failed@3", "requests-silent@3", "voice-dead@3"])
-def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
+def test_other_faults_do_not_raise_the_limit_of_requests(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, beside: str
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -63,7 +63,7 @@ def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])
-def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
+def test_pressing_strategies_are_not_used_after_a_refusal(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -80,7 +80,7 @@ def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
 
 
 @pytest.mark.parametrize("seed", [2, 7, 9])
-def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
+def test_an_unseen_response_counts_as_a_refusal(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -89,7 +89,7 @@ def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
 
 
 @pytest.mark.slow
-def test_who_was_left_in_peace_with_a_hidden_card_refuses_again_and_the_card_is_no_new_fault(
+def test_a_repeated_refusal_with_a_hidden_card_is_no_new_card_fault(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -108,7 +108,7 @@ def test_who_was_left_in_peace_with_a_hidden_card_refuses_again_and_the_card_is_
 
 
 @pytest.mark.slow
-def test_a_covered_camera_says_nothing_of_a_person(
+def test_a_covered_camera_is_no_refusal(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -116,7 +116,7 @@ def test_a_covered_camera_says_nothing_of_a_person(
         assert "never-complies" not in codes(play(supervise("camera-occluded@3", seed=seed)))
 
 
-def test_the_others_game_goes_on_after_a_person_was_left_in_peace(supervise: Supervise) -> None:
+def test_the_game_continues_after_a_person_is_left_in_peace(supervise: Supervise) -> None:
     events = play(supervise("never-complies@8", seed=5))
     last = max(n for n, e in enumerate(events) if isinstance(e, Moved) and e.move.speech)
     assert any(isinstance(e, Acted) and e.outcome.numbers for e in events[last:])
@@ -126,7 +126,7 @@ def test_the_others_game_goes_on_after_a_person_was_left_in_peace(supervise: Sup
     assert any("all right" in words for words in said)
 
 
-def test_a_choice_can_leave_out_strategies_that_are_out_of_place() -> None:
+def test_a_choice_can_exclude_strategies() -> None:
     people = Persuasion(["a"], ["calm", "pressing"], Random(1))
     assert {people.choose("a", ["pressing"]).strategy for _ in range(50)} == {"calm"}
     assert {people.choose("a").strategy for _ in range(50)} == {"calm", "pressing"}
@@ -148,7 +148,7 @@ def asked(events: list[Event], person: str) -> int:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 13))
-def test_nobody_is_asked_in_vain_more_than_six_times_in_a_game(
+def test_a_game_has_at_most_six_requests_in_vain_for_a_person(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -160,7 +160,7 @@ def test_nobody_is_asked_in_vain_more_than_six_times_in_a_game(
 
 
 @pytest.mark.slow
-def test_an_activity_can_ask_less_often(
+def test_an_activity_can_lower_the_limits_of_requests(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -175,7 +175,7 @@ def test_an_activity_can_ask_less_often(
 
 
 @pytest.mark.slow
-def test_nobody_hears_the_same_sentence_twice_in_a_row(
+def test_no_sentence_is_repeated_in_succession(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -195,22 +195,20 @@ def test_nobody_hears_the_same_sentence_twice_in_a_row(
     assert pairs > 20
 
 
-def test_what_is_switched_off_stays_off_where_the_same_would_be_said_again() -> None:
+def test_excluded_strategies_stay_excluded_when_avoiding_repetition() -> None:
     people = Persuasion(["a"], ["calm", "pressing", "kind"], Random(1))
     assert {people.choose("a", ["pressing"], again="kind").strategy for _ in range(50)} == {"calm"}
     chosen = {people.choose("a", ["pressing", "calm"], again="kind").strategy for _ in range(50)}
     assert chosen == {"kind"}  # there is no other way of saying it
 
 
-def test_what_the_robot_asks_for_more_than_once_can_be_said_in_two_ways() -> None:
+def test_repeated_recovery_requests_have_two_wordings() -> None:
     rules = load_faults(load_robot()).rules
     again = [rule for rule in rules if "user" in rule.recovery and rule.tries > 1]
     assert again and all(rule.aloud_again not in ("", rule.aloud) for rule in again)
 
 
-def test_the_log_says_how_often_people_may_be_asked(
-    supervise: Supervise, workspace: Workspace
-) -> None:
+def test_the_log_records_the_limits_of_requests(supervise: Supervise, workspace: Workspace) -> None:
     play(supervise())
     (game,) = read_games(workspace.store)
     assert game.asks == (3, 6)

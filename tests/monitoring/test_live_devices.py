@@ -1,4 +1,4 @@
-"""A real camera in a simulated game: what happens to it is a fault there, and so is its end."""
+"""A real camera in a simulated game: its faults and their ends are noticed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FROZEN = Sight("FROZEN", "The very same picture.", 1.0, 0.05, 3.0, 0.5, 0.2, 0.6
 
 
 class Camera:
-    """A head camera that is as the test says."""
+    """A head camera in a given state."""
 
     def __init__(self) -> None:
         self.sight = WELL
@@ -42,7 +42,7 @@ def camera(monkeypatch: pytest.MonkeyPatch) -> Camera:
         (FROZEN, "camera-frozen", True),
     ],
 )
-def test_what_happens_to_a_real_camera_is_diagnosed_and_its_end_seen(
+def test_a_fault_of_a_real_camera_is_diagnosed_until_it_ends(
     sight: Sight, code: str, halts: bool, workspace: Workspace, learnt: Policy, camera: Camera
 ) -> None:
     game = workspace.supervision(learnt, 3, live=camera.health)
@@ -74,7 +74,7 @@ def test_devices_that_are_not_real_stay_simulated(
     }
 
 
-def test_a_camera_is_not_asked_more_often_than_its_readings_change(
+def test_a_camera_is_not_queried_more_often_than_its_readings_change(
     workspace: Workspace, learnt: Policy, camera: Camera, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tangy_tui.app.partly_live_world.OLDEST", 60.0)
@@ -85,7 +85,7 @@ def test_a_camera_is_not_asked_more_often_than_its_readings_change(
     assert camera.asked == 1
 
 
-def test_a_fault_of_another_device_can_still_be_brought_about(
+def test_a_fault_of_another_device_can_still_be_injected(
     workspace: Workspace, learnt: Policy, camera: Camera
 ) -> None:
     game = workspace.supervision(learnt, 3, live=camera.health, injections=["base-failed"])

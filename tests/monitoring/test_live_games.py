@@ -1,4 +1,4 @@
-"""Live games without a screen: what is said while they are played."""
+"""Live games without a screen: their events and log."""
 
 from __future__ import annotations
 
@@ -22,9 +22,7 @@ PEOPLE = ("user1", "user2", "user3", "user4")
 
 
 @pytest.mark.slow
-def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
-    workspace: Workspace, learnt: Policy
-) -> None:
+def test_a_swapped_seat_is_reported_once_in_each_game(workspace: Workspace, learnt: Policy) -> None:
     link = FakeLink(PEOPLE)
     link.cards["user2"] = LaidCard(7)
     link.faces["user2"] = "user4"
@@ -70,9 +68,7 @@ def live_world(workspace: Workspace, link: FakeLink) -> LiveWorld:
     )
 
 
-def test_a_resumed_robot_visits_nobody_again_after_the_last_number(
-    workspace: Workspace, learnt: Policy
-) -> None:
+def test_a_resumed_live_game_repeats_no_final_visit(workspace: Workspace, learnt: Policy) -> None:
     game = workspace.supervision(learnt, 1, world=live_world(workspace, FakeLink(PEOPLE)))
     told = game.begin()
     while sum(isinstance(e, GameChanged) and e.what == "visit over" for e in told) < 2:
@@ -91,7 +87,7 @@ def test_a_resumed_robot_visits_nobody_again_after_the_last_number(
     assert isinstance(told[-1], GameEnded) and told[-1].stopped is None
 
 
-def test_what_is_not_judged_is_said_logged_and_counted(
+def test_an_unjudged_card_is_reported_logged_and_counted(
     workspace: Workspace, learnt: Policy
 ) -> None:
     link = FakeLink(PEOPLE)

@@ -21,7 +21,7 @@ from tests.support.games import world_of
 WITH_MARKS = ("incorrectly marked", "missing numbers")
 
 
-def test_a_robot_that_was_carried_off_has_not_lost_sight_of_a_card() -> None:
+def test_a_kidnapped_robot_is_not_diagnosed_as_a_hidden_card() -> None:
     found: dict[str, Fact] = {
         "localisation.fit": 0.55,
         "localisation.spread": 1.6,
@@ -33,7 +33,7 @@ def test_a_robot_that_was_carried_off_has_not_lost_sight_of_a_card() -> None:
     assert told.rule.code == "carried-off"
 
 
-def test_what_comes_to_nothing_with_nothing_left_to_mend_is_a_request_that_stays_open(
+def test_a_closing_without_effect_on_a_correct_card_is_a_stuck_request(
     supervise: Supervise,
 ) -> None:
     game = supervise(seed=3)
@@ -47,7 +47,7 @@ def test_what_comes_to_nothing_with_nothing_left_to_mend_is_a_request_that_stays
     assert not world.can_show(KINDS["no-effect"], action)
 
 
-def test_a_request_that_a_person_refuses_does_not_close_so_its_sign_cannot_stay_up_for_long(
+def test_a_refused_request_cannot_show_a_stuck_sign(
     supervise: Supervise,
 ) -> None:
     world = world_of(supervise(seed=3))
@@ -71,7 +71,7 @@ def test_a_request_that_a_person_refuses_does_not_close_so_its_sign_cannot_stay_
 
 
 @pytest.mark.slow
-def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
+def test_a_refusal_after_an_answer_teaches_no_effect(
     supervise: Supervise,
 ) -> None:
     game = supervise(seed=3)
@@ -88,7 +88,7 @@ def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
     assert known["what was asked about"] == {"settled"}
 
 
-def test_a_stuck_request_is_told_although_a_critical_fault_came_at_once() -> None:
+def test_a_stuck_request_is_diagnosed_beside_a_critical_fault() -> None:
     found: dict[str, Fact] = {
         "stop_button.latched": True,
         "mismatch.request": "open with nothing left",
@@ -99,7 +99,7 @@ def test_a_stuck_request_is_told_although_a_critical_fault_came_at_once() -> Non
 
 
 @pytest.mark.slow
-def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
+def test_an_answer_teaches_effects_only_for_undemonstrated_behaviours(
     supervise: Supervise,
 ) -> None:
     game = supervise("request-stuck", seed=3)
@@ -117,7 +117,7 @@ SETTINGS = {"activity": "bingo", "users": 4}
 
 
 @pytest.mark.slow
-def test_each_kind_is_told_with_whatever_behaviour_it_comes() -> None:
+def test_each_kind_of_fault_is_diagnosed_with_every_behaviour() -> None:
     rows = [row for kind in KINDS for row in fault_games.matrix(SETTINGS, (kind, 3, 1))]
     came = fault_games.added(rows, "came")
     assert came > 120, "fewer than half of the kinds and behaviours: the test would mean little"
@@ -129,7 +129,7 @@ def test_each_kind_is_told_with_whatever_behaviour_it_comes() -> None:
 
 
 @pytest.mark.slow
-def test_who_complies_seldom_changes_nothing_of_it() -> None:
+def test_low_compliance_does_not_change_the_diagnoses() -> None:
     for kind in ("card-out-of-sight", "never-complies", "no-effect"):
         usual = fault_games.matrix(SETTINGS, (kind, 5, 2))
         assert fault_games.matrix({**SETTINGS, "complies": 0.6}, (kind, 5, 2)) == usual
@@ -139,14 +139,14 @@ def test_who_complies_seldom_changes_nothing_of_it() -> None:
     ("lesson", "games"),
     [(0, 60), (3, 60), *(pytest.param(n, 240, marks=pytest.mark.slow) for n in (0, 3))],
 )
-def test_games_in_which_nothing_is_wrong_have_no_alarm(lesson: int, games: int) -> None:
+def test_correct_games_have_at_most_one_percent_false_alarms(lesson: int, games: int) -> None:
     told = fault_games.alarms({**SETTINGS, "complies": 0.6}, (lesson, 40, games))
     assert told["steps"] > 33 * games
     assert sum(told["codes"].values()) <= 0.01 * told["games"]
 
 
 @pytest.mark.slow
-def test_who_follows_seldom_is_told_of_and_nothing_else_is() -> None:
+def test_low_following_is_diagnosed_only_as_refusal() -> None:
     told = fault_games.alarms({**SETTINGS, "follows": 0.6}, (1, 9, 60))
     assert set(told["codes"]) == {"never-complies"}
 
@@ -162,14 +162,14 @@ def test_who_follows_seldom_is_told_of_and_nothing_else_is() -> None:
         ("laser-disconnected", "no-effect"),
     ],
 )
-def test_of_two_faults_the_critical_one_comes_first_and_both_end(critical: str, other: str) -> None:
+def test_the_critical_one_of_two_faults_is_handled_first(critical: str, other: str) -> None:
     row = fault_games.pairs(SETTINGS, (critical, other, 1, 3))
     assert row["came"] > 0
     assert row["came"] == row["diagnosed"] == row["first"] == row["ended"]
 
 
 @pytest.mark.slow
-def test_games_full_of_faults_come_to_an_end() -> None:
+def test_games_with_many_faults_end() -> None:
     played = fault_games.crowd(SETTINGS, (4, 20, 0.004))
     assert sum(game["came"] for game in played) >= 60
     assert all(game["ended"] == "to its end" or "halted" in game["ended"] for game in played)

@@ -1,4 +1,4 @@
-"""A device that a robot never had is no fault, and nothing that staff are sent to look at."""
+"""A device that a robot lacks is no fault, and staff are not sent to check it."""
 
 from __future__ import annotations
 
@@ -35,9 +35,7 @@ def failing(device: str, state: DeviceState = ERROR) -> Health:
 
 
 @pytest.mark.parametrize("device", LACKED)
-def test_the_rules_load_for_a_robot_that_lacks_a_device_and_name_it_nowhere(
-    tmp_path: Path, device: str
-) -> None:
+def test_rules_of_a_missing_device_are_dropped(tmp_path: Path, device: str) -> None:
     robot = load_robot(str(robot_without(tmp_path, device)))
     book = load_faults(robot)
     keys = {key for rule in book.rules for key in rule.symptoms}
@@ -54,21 +52,21 @@ def test_the_rules_load_for_every_robot_that_ships(name: str) -> None:
 
 @pytest.mark.parametrize("device", TOLD_MISSING)
 @pytest.mark.parametrize("state", [ERROR, STALE])
-def test_whatever_is_reported_of_a_device_that_is_not_there_is_no_fault(
+def test_a_report_about_a_missing_device_is_no_fault(
     tmp_path: Path, device: str, state: DeviceState
 ) -> None:
     assert codes(load_robot(), failing(device, state)) != []
     assert codes(load_robot(str(robot_without(tmp_path, device))), failing(device, state)) == []
 
 
-def test_a_robot_without_a_voice_is_mute_as_soon_as_its_screen_fails(tmp_path: Path) -> None:
+def test_a_robot_without_a_voice_is_mute_if_its_screen_fails(tmp_path: Path) -> None:
     robot = load_robot(str(robot_without(tmp_path, "voice")))
     assert codes(load_robot(), failing("screen")) == ["screen-dead"]
     assert codes(robot, failing("screen")) == ["mute"]
     assert load_faults(robot).rule("mute").device == "screen"
 
 
-def test_a_fact_that_no_device_of_the_robot_measures_leaves_its_other_rules(
+def test_an_unmeasured_fact_drops_only_its_own_rules(
     tmp_path: Path,
 ) -> None:
     text = load_robot().file.read_text(encoding="utf-8")
@@ -87,7 +85,7 @@ def test_a_fact_that_no_device_of_the_robot_measures_leaves_its_other_rules(
         ('"camera.state" = { is = "STALE" }', '"camera.state" = { is = "STALEY" }', "STALE"),
     ],
 )
-def test_a_misspelt_device_is_refused_by_name_also_where_the_robot_lacks_it(
+def test_a_misspelt_device_in_the_rules_is_refused(
     tmp_path: Path, right: str, wrong: str, told: str
 ) -> None:
     import tangy_profiles
@@ -101,7 +99,7 @@ def test_a_misspelt_device_is_refused_by_name_also_where_the_robot_lacks_it(
         load_faults(robot, mine)
 
 
-def test_what_nothing_drives_is_left_out_and_known_by_name() -> None:
+def test_devices_without_a_driver_are_left_out_and_listed() -> None:
     robot = load_robot("turtlebot4")
     there = driven(robot)
     assert missing_devices(there) == ("stop_button", "requests", "arms")
@@ -110,7 +108,7 @@ def test_what_nothing_drives_is_left_out_and_known_by_name() -> None:
     assert missing_devices(driven(robot, ["requests"])) == ("stop_button", "arms")
 
 
-def test_a_device_that_only_this_robot_has_is_told_when_nothing_drives_it(tmp_path: Path) -> None:
+def test_an_extra_device_without_a_driver_is_reported(tmp_path: Path) -> None:
     path = robot_without(tmp_path)
     lamp = '[[devices]]\nname = "lamp"\nlabel = "lamp"\nstale_after = 1\n'
     path.write_text(
@@ -122,20 +120,20 @@ def test_a_device_that_only_this_robot_has_is_told_when_nothing_drives_it(tmp_pa
     assert codes(robot, (*WELL, Reading("lamp", state=ERROR))) == []
 
 
-def test_only_a_robot_with_a_camera_for_it_reads_cards(tmp_path: Path) -> None:
+def test_only_a_robot_with_a_card_camera_reads_cards(tmp_path: Path) -> None:
     assert reads_cards(load_robot())
     assert not reads_cards(load_robot(str(robot_without(tmp_path, "camera"))))
     assert not reads_cards(driven(load_robot()))
 
 
-def test_faults_of_missing_devices_cannot_be_brought_about(tmp_path: Path) -> None:
+def test_faults_of_missing_devices_cannot_be_injected(tmp_path: Path) -> None:
     robot = load_robot(str(robot_without(tmp_path, "camera")))
     kinds = possible_kinds(rule.code for rule in load_faults(robot).rules)
     assert not [kind for kind in kinds if kind.startswith("camera")]
     assert {"laser-occluded", "never-complies", "voice-dead"} <= set(kinds)
 
 
-def test_every_device_of_which_staff_are_told_is_one_that_is_known() -> None:
+def test_every_reported_device_is_known() -> None:
     assert set(TOLD_MISSING) <= known_devices().keys()
     assert all(known_devices()[name].label for name in TOLD_MISSING)
     assert all(reading.state == OK for reading in WELL)

@@ -1,4 +1,4 @@
-"""A fault that comes while Tangy recovers from another: neither hides what became of the other."""
+"""A fault during the recovery from another: each keeps its own result."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.support.games import codes, ended, play
         ("laser-disconnected@8", "link-lost@recovery", 0),
     ],
 )
-def test_both_are_told_once_and_nothing_else_is(
+def test_two_overlapping_faults_are_each_reported_once(
     supervise: Supervise, first: str, second: str, seed: int
 ) -> None:
     events = play(supervise(first, second, seed=seed))
@@ -31,7 +31,7 @@ def test_both_are_told_once_and_nothing_else_is(
     assert ended(events).stopped is None
 
 
-def test_what_a_silent_device_would_show_is_not_taken_for_gone(
+def test_a_fault_of_a_silent_device_is_not_taken_for_over(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A real scanner without its cable does not say any more that it is covered."""

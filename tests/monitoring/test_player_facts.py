@@ -1,4 +1,4 @@
-"""Reports on activities by facts tell people's answers, and what was counted for each."""
+"""Reports on activities by facts list the answers and scores of people."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_each_answer_counts_once_and_belongs_to_its_question(quiz: Quiz) -> None
     assert facts.counts == {"score": {"user1": 1, "user2": 0, "user3": 0}}
 
 
-def test_page_and_lines_tell_answers_scores_and_what_was_not_clear(quiz: Quiz) -> None:
+def test_page_and_lines_list_answers_scores_and_unclear_answers(quiz: Quiz) -> None:
     played(quiz)
     unclear = AnswerNotClear(
         game="g", fact="answer", said="b?", certainty=0.4, source="staff", asked_again=True
@@ -105,6 +105,6 @@ def test_page_and_lines_tell_answers_scores_and_what_was_not_clear(quiz: Quiz) -
     assert session.to_json()["player_facts"][0]["counts"]["score"]["user1"] == 1
 
 
-def test_a_report_on_a_game_without_such_facts_has_no_part_for_them(quiz: Quiz) -> None:
+def test_a_report_without_player_facts_has_no_section_for_them(quiz: Quiz) -> None:
     session = quiz.session()
     assert session.player_facts == [] and "Answers and scores" not in session_page(session)

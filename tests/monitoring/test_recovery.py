@@ -1,4 +1,4 @@
-"""Recovery: rung by rung, bounded, the worst first; and nothing moves while Tangy is halted."""
+"""Recovery: step by step, bounded, the most critical fault first; nothing moves during a halt."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_a_critical_fault_halts_at_once_and_staff_clear_it(supervise: Supervise,
     assert game.faults[0].status == OVER
 
 
-def test_what_is_mended_without_the_expert_can_be_cleared(supervise: Supervise) -> None:
+def test_a_fault_mended_without_the_expert_can_be_cleared(supervise: Supervise) -> None:
     game = supervise("emergency-stop@2", seed=3)
     game.begin()
     until(game, lambda now: now.halted)
@@ -65,7 +65,7 @@ def test_what_is_mended_without_the_expert_can_be_cleared(supervise: Supervise) 
     assert moves(game.clear("Ada")) == ["cleared"]
 
 
-def test_a_halted_game_that_is_given_up_says_why(supervise: Supervise) -> None:
+def test_an_abandoned_halted_game_gives_its_reason(supervise: Supervise) -> None:
     game = supervise("camera-disconnected@7", seed=3)
     events = play(game, expert=False)
     stopped = ended(events).stopped
@@ -74,7 +74,7 @@ def test_a_halted_game_that_is_given_up_says_why(supervise: Supervise) -> None:
     assert moves(events)[-1] == "given up"
 
 
-def test_a_fault_in_the_last_step_does_not_hold_the_end_up(supervise: Supervise) -> None:
+def test_a_fault_in_the_last_step_does_not_delay_the_end(supervise: Supervise) -> None:
     length = len(acts(play(supervise(seed=3))))
     game = supervise(f"voice-dead@{length}", seed=3)
     events = play(game)
@@ -87,7 +87,7 @@ def test_a_fault_in_the_last_step_does_not_hold_the_end_up(supervise: Supervise)
 # ----------------------------------------------------------------------------- the ladder
 
 
-def test_a_user_is_asked_and_what_helps_ends_it(
+def test_a_fault_ends_when_a_user_helps(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 1.0)
@@ -99,7 +99,7 @@ def test_a_user_is_asked_and_what_helps_ends_it(
     assert asked.image == "Please move the obstacle"
 
 
-def test_who_does_not_help_is_asked_so_often_and_then_an_expert(
+def test_users_who_do_not_help_are_asked_three_times_before_the_expert(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -113,7 +113,7 @@ def test_who_does_not_help_is_asked_so_often_and_then_an_expert(
     assert game.faults[0].ladder == ("user", "expert")
 
 
-def test_a_request_that_does_not_end_is_set_aside_in_the_end(
+def test_a_stuck_request_is_finally_set_aside(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -122,7 +122,7 @@ def test_a_request_that_does_not_end_is_set_aside_in_the_end(
     assert game.faults[0].ladder == ("user", "continue")
 
 
-def test_what_is_borne_is_told_once_and_ends_when_it_is_over(supervise: Supervise) -> None:
+def test_a_tolerated_fault_is_reported_once_until_it_ends(supervise: Supervise) -> None:
     game = supervise("requests-silent@4", seed=3)
     game.begin()
     until(game, lambda now: now.faults and now.faults[0].status == "borne")
@@ -135,21 +135,21 @@ def test_what_is_borne_is_told_once_and_ends_when_it_is_over(supervise: Supervis
     assert game.status == ("OK", "")
 
 
-def test_people_are_heard_again_while_the_request_sensor_is_silent(supervise: Supervise) -> None:
+def test_spoken_requests_work_while_the_request_sensor_is_silent(supervise: Supervise) -> None:
     visits = sum(a.action.behaviour.effect == "go to user" for a in acts(play(supervise(seed=3))))
     silent = acts(play(supervise("requests-silent@3", seed=3)))
     assert visits
     assert sum(act.action.behaviour.effect == "go to user" for act in silent) >= visits - 1
 
 
-def test_without_a_teacher_an_expert_is_asked(supervise: Supervise) -> None:
+def test_the_expert_is_asked_without_a_teacher(supervise: Supervise) -> None:
     game = supervise("no-effect", seed=3, asks=False)
     assert moves(play(game)) == [
         "escalated", "halted", "acknowledged", "expert called", "cleared",
     ]  # fmt: skip
 
 
-def test_the_same_again_and_again_is_not_asked_for_ever(
+def test_a_repeated_fault_is_not_asked_for_ever(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 1.0)
@@ -169,7 +169,7 @@ def test_the_same_again_and_again_is_not_asked_for_ever(
 
 @pytest.mark.parametrize("other", EASY)
 @pytest.mark.parametrize("critical", CRITICAL[::2])
-def test_the_critical_one_wins_and_the_other_is_handled_after(
+def test_a_critical_fault_is_handled_before_a_simultaneous_one(
     supervise: Supervise, critical: str, other: str
 ) -> None:
     hidden = critical == "link-lost" or {critical, other} == {
@@ -203,7 +203,7 @@ def test_a_critical_fault_during_the_recovery_of_another_comes_first(
     assert moves(game.step(), "path-blocked") == ["asked"]
 
 
-def test_while_a_teacher_is_asked_something_critical_takes_over(supervise: Supervise) -> None:
+def test_a_critical_fault_interrupts_a_question_to_the_teacher(supervise: Supervise) -> None:
     game = supervise("no-effect", seed=3)
     game.begin()
     until(game, lambda now: now.question)
@@ -219,9 +219,7 @@ def test_while_a_teacher_is_asked_something_critical_takes_over(supervise: Super
 # ------------------------------------------------------------------------------ the teacher
 
 
-def test_a_teacher_says_what_to_do_and_the_game_goes_on(
-    workspace: Workspace, learnt: Policy
-) -> None:
+def test_an_answer_of_the_teacher_resumes_the_game(workspace: Workspace, learnt: Policy) -> None:
     game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
     events = play(game)
     assert moves(events) == ["teacher asked", "taught"]
@@ -230,7 +228,7 @@ def test_a_teacher_says_what_to_do_and_the_game_goes_on(
     assert ended(events).stopped is None
 
 
-def test_a_teacher_says_that_it_is_all_right_and_it_is_expected_from_then_on(
+def test_an_effect_accepted_by_the_teacher_is_expected_afterwards(
     workspace: Workspace, learnt: Policy
 ) -> None:
     game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
@@ -245,7 +243,7 @@ def test_a_teacher_says_that_it_is_all_right_and_it_is_expected_from_then_on(
     assert not codes(play(again))
 
 
-def test_what_is_only_not_known_cannot_be_called_all_right(supervise: Supervise) -> None:
+def test_an_explained_fault_cannot_be_accepted(supervise: Supervise) -> None:
     game = supervise("base-stuck", seed=3)
     game.begin()
     until(game, lambda now: now.halted)
@@ -313,7 +311,7 @@ injections = st.lists(
 
 @pytest.mark.slow
 @given(injections, st.integers(0, 10_000), st.booleans(), st.booleans())
-def test_whatever_goes_wrong_the_game_ends_and_nothing_moves_after_a_halt(
+def test_every_game_ends_and_no_behaviour_runs_during_a_halt(
     small_policy: Policy,
     _taught: Path,
     tmp_path_factory: pytest.TempPathFactory,
@@ -359,9 +357,7 @@ def closing_step(supervise: Supervise) -> tuple[int, int]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS.values() if kind.stops])
-def test_what_breaks_a_behaviour_off_explains_that_nothing_has_come_of_it(
-    supervise: Supervise, kind: str
-) -> None:
+def test_an_interrupting_fault_explains_the_missing_effect(supervise: Supervise, kind: str) -> None:
     seed, step = closing_step(supervise)
     told = play(supervise(f"{kind}@{step}", seed=seed))
     assert codes(told) == [KINDS[kind].code]
@@ -381,7 +377,7 @@ def waiting(supervise: Supervise, some: int) -> Supervision:
     raise AssertionError(f"Never did {some} people wait.")
 
 
-def test_a_sign_that_is_lowered_again_is_noted_and_the_game_goes_on(
+def test_a_withdrawn_request_is_noted_and_the_game_continues(
     supervise: Supervise, workspace: Workspace
 ) -> None:
     game = waiting(supervise, 2)
@@ -395,7 +391,7 @@ def test_a_sign_that_is_lowered_again_is_noted_and_the_game_goes_on(
     assert game.detector.refusals(person) == {}
 
 
-def test_the_only_one_who_waits_may_change_their_mind(supervise: Supervise) -> None:
+def test_the_only_waiting_person_may_withdraw(supervise: Supervise) -> None:
     game = waiting(supervise, 1)
     tracker = world_of(game).tracker
     (person,) = tracker.queue
@@ -404,7 +400,7 @@ def test_the_only_one_who_waits_may_change_their_mind(supervise: Supervise) -> N
     assert game.faults[-1].person == person and game.question is None
 
 
-def test_staff_are_asked_when_all_stop_asking_at_the_same_moment(supervise: Supervise) -> None:
+def test_staff_are_asked_if_all_requests_vanish_at_once(supervise: Supervise) -> None:
     game = waiting(supervise, 2)
     world_of(game).tracker.queue.clear()
     assert codes(game.step()) == ["unexplained"]

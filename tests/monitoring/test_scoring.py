@@ -1,4 +1,4 @@
-"""What is brought about is listed with what became of it, and added up with intervals."""
+"""Scoring of injected faults: each with its result, and totals with intervals."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def scored(injected: Sequence[Injected], *faults: Fault) -> GameScore:
     return score_game(1, injected, faults, BOOK)
 
 
-def test_one_that_is_named_right_is_listed_with_when_and_when_it_was_over() -> None:
+def test_a_correct_diagnosis_is_listed_with_its_times() -> None:
     told = scored([came("voice-dead", 3)], fault("voice-dead", 3, ("went on", 42.0)))
     (one,) = told.injections
     assert (one.step, one.could_show, one.seen, one.named) == (3, 3, 3, 3)
@@ -47,42 +47,42 @@ def test_one_that_is_named_right_is_listed_with_when_and_when_it_was_over() -> N
     assert told.false_alarms == ()
 
 
-def test_one_that_is_taken_for_another_is_seen_and_not_named() -> None:
+def test_a_wrong_diagnosis_counts_as_detected_but_not_diagnosed() -> None:
     (one,) = scored([came("camera-frozen", 3)], fault("camera-disconnected", 4)).injections
     assert (one.seen, one.named, one.called) == (4, None, "camera-disconnected")
 
 
-def test_one_that_is_named_right_after_a_mistake_was_seen_before() -> None:
+def test_a_late_correct_diagnosis_keeps_its_detection_time() -> None:
     told = scored([came("camera-frozen", 3)], fault("unexplained", 3), fault("camera-frozen", 5))
     assert (told.injections[0].seen, told.injections[0].named) == (3, 5)
     assert summary([told])["kinds"]["camera-frozen"]["precision"]["share"] == 0
 
 
-def test_one_that_is_missed_counts_only_if_it_could_be_noticed() -> None:
+def test_a_missed_fault_counts_only_if_it_could_show() -> None:
     hidden = Injected(KINDS["base-stuck"], 3, 30.0)
     told = summary([scored([came("base-stuck", 3)]), scored([hidden])])
     assert told["recall"]["n"] == 1 and told["recall"]["share"] == 0
     assert told["kinds"]["base-stuck"]["came"] == 2
 
 
-def test_what_nothing_has_caused_is_a_false_alarm() -> None:
+def test_a_diagnosis_without_an_injection_is_a_false_alarm() -> None:
     told = scored([came("voice-dead", 9)], fault("link-lost", 3), fault("voice-dead", 9))
     assert told.false_alarms == ("link-lost",)
     assert summary([told])["precision"]["share"] == 0.5
 
 
-def test_the_same_once_more_is_no_false_alarm() -> None:
+def test_a_repeated_diagnosis_is_no_false_alarm() -> None:
     again = scored([came("never-complies", 3)], *(fault("never-complies", n) for n in (5, 9)))
     assert again.false_alarms == () and again.injections[0].named == 5
 
 
-def test_two_that_give_a_third_together_are_both_named_by_it() -> None:
+def test_a_combined_diagnosis_counts_for_both_injections() -> None:
     both = [came("voice-dead", 3), came("screen-dead", 3)]
     told = scored(both, fault("mute", 3))
     assert [one.named for one in told.injections] == [3, 3] and told.false_alarms == ()
 
 
-def test_intervals_never_leave_what_is_possible_and_grow_with_few() -> None:
+def test_intervals_stay_in_range_and_widen_with_few_samples() -> None:
     few = summary([scored([came("voice-dead", 3)], fault("voice-dead", 3))])["recall"]
     many = [scored([came("voice-dead", 3)], fault("voice-dead", 3)) for _ in range(100)]
     low, high = few["interval"]
@@ -90,9 +90,7 @@ def test_intervals_never_leave_what_is_possible_and_grow_with_few() -> None:
 
 
 @pytest.mark.parametrize("kind", sorted(set(KINDS) - {"request-withdrawn"}))
-def test_every_kind_that_is_brought_about_in_a_game_is_in_the_list(
-    supervise: Supervise, kind: str
-) -> None:
+def test_every_injected_fault_is_listed(supervise: Supervise, kind: str) -> None:
     game = supervise(kind, seed=3)
     play(game)
     world = game.world
@@ -118,7 +116,7 @@ def test_leaving_a_person_in_peace_about_a_fault_is_no_false_alarm() -> None:
         (("requests-silent@9", "request-withdrawn@9"), "request-withdrawn"),
     ],
 )
-def test_what_another_fault_hides_counts_as_none_that_could_show(
+def test_a_fault_hidden_by_another_does_not_count_as_visible(
     supervise: Supervise, pair: tuple[str, str], hidden: str
 ) -> None:
     shown = 0

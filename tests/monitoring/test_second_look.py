@@ -1,4 +1,4 @@
-"""One look is no proof: what contradicts the expectation once is looked at again first."""
+"""The second look: an observation that contradicts the expectation is repeated first."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ RIGHT, WRONG, OTHER = state("right"), state("wrong"), state("other")
 
 
 class Eyes:
-    """A world that is looked at: one look after another, and the last for ever."""
+    """A world with a given series of looks; the last one repeats."""
 
     def __init__(self, looks: Sequence[ActivityState]) -> None:
         self.looks = list(looks)
@@ -59,13 +59,13 @@ def after(*looks: ActivityState) -> tuple[ActivityState, int]:
         ((WRONG, OTHER, WRONG, OTHER, WRONG), WRONG, 6),
     ],
 )
-def test_what_contradicts_is_seen_again_before_it_counts(
+def test_a_contradiction_counts_only_after_a_second_look(
     looks: tuple[ActivityState, ...], seen: ActivityState, taken: int
 ) -> None:
     assert after(*looks) == (seen, taken)
 
 
-def test_looks_that_never_agree_come_to_an_end() -> None:
+def test_disagreeing_looks_are_bounded() -> None:
     _, taken = after(*(state(f"never {number}") for number in range(20)))
     assert taken == ReadingError().needed + MORE_LOOKS
 
@@ -73,7 +73,7 @@ def test_looks_that_never_agree_come_to_an_end() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ODD)
 @pytest.mark.parametrize("kind", [OddCards, OddStates])
-def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
+def test_a_single_odd_look_causes_no_fault_and_no_request(
     kind: type[OddWorld], odd: str, workspace: Workspace, learnt: Policy
 ) -> None:
     world = kind(workspace.activity, list(workspace.names), seed=4, odd=odd, share=0.05)
@@ -86,7 +86,7 @@ def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", ["clear wrong marks", "set missing marks"])
-def test_a_reading_that_stays_wrong_is_left_to_staff_once_and_the_game_goes_on(
+def test_a_persistently_wrong_reading_is_left_to_staff_once(
     effect: str, workspace: Workspace, learnt: Policy
 ) -> None:
     activity = workspace.activity

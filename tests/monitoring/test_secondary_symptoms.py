@@ -1,4 +1,4 @@
-"""One cause, one fault: what a lost link took along says nothing new until it was well once."""
+"""Secondary symptoms: devices behind a lost link are no faults until they were well once."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Seen:
 
 
 @pytest.mark.parametrize("device", NOT_THE_LINK)
-def test_a_device_that_comes_back_after_the_link_is_no_fault_of_its_own(device: str) -> None:
+def test_a_device_that_returns_after_the_link_is_no_separate_fault(device: str) -> None:
     seen = Seen()
     assert seen.at(0.0, silent(*ROBOT.devices)) == ["link-lost"]
     assert seen.at(4.0, silent(device)) == []
@@ -52,7 +52,7 @@ def test_a_device_that_comes_back_after_the_link_is_no_fault_of_its_own(device: 
 
 
 @pytest.mark.parametrize("device", NOT_THE_LINK)
-def test_a_device_that_stays_silent_after_its_grace_is_a_fault_of_its_own(device: str) -> None:
+def test_a_device_silent_beyond_its_grace_period_is_a_fault(device: str) -> None:
     seen = Seen()
     seen.at(0.0, silent(*ROBOT.devices))
     assert seen.at(4.0, silent(device)) == []
@@ -61,21 +61,21 @@ def test_a_device_that_stays_silent_after_its_grace_is_a_fault_of_its_own(device
 
 
 @pytest.mark.parametrize("device", NOT_THE_LINK)
-def test_a_device_that_was_well_once_and_falls_silent_again_is_a_fault(device: str) -> None:
+def test_a_recovered_device_that_falls_silent_is_a_fault(device: str) -> None:
     seen = Seen()
     seen.at(0.0, silent(*ROBOT.devices))
     assert seen.at(4.0, WELL) == []
     assert len(seen.at(4.2, silent(device))) == 1
 
 
-def test_a_link_that_is_lost_again_and_again_explains_no_less_the_last_time() -> None:
+def test_a_repeatedly_lost_link_explains_its_devices_each_time() -> None:
     seen = Seen()
     for began in range(0, 20, 4):
         assert seen.at(began, silent(*ROBOT.devices)) == ["link-lost"]
         assert seen.at(began + 2.0, silent("laser", "camera")) == []
 
 
-def test_an_emergency_stop_is_told_whatever_a_lost_link_explains() -> None:
+def test_an_emergency_stop_is_reported_despite_a_lost_link() -> None:
     seen = Seen()
     seen.at(0.0, silent(*ROBOT.devices))
     latched = Reading("stop_button", 0.0, "OK", {"latched": True})
@@ -83,14 +83,14 @@ def test_an_emergency_stop_is_told_whatever_a_lost_link_explains() -> None:
     assert seen.at(4.0, back) == ["emergency-stop"]
 
 
-def test_what_was_well_while_the_link_was_lost_is_not_explained_by_it() -> None:
+def test_a_lost_link_does_not_explain_devices_that_were_well() -> None:
     seen = Seen()
     assert seen.at(0.0, silent("link")) == ["link-lost"]
     assert seen.at(1.0, silent("voice")) == ["voice-dead"]
 
 
 class Robot:
-    """Devices that are as the test says."""
+    """Devices with given readings."""
 
     def __init__(self) -> None:
         self.readings: Health = WELL
@@ -120,7 +120,7 @@ def stalled(game: Supervision, robot: Robot) -> list[str]:
     return codes(told + game.look())
 
 
-def test_a_stall_of_the_robot_is_one_fault_and_over_when_it_is_cleared(
+def test_a_stall_of_the_robot_is_one_fault_until_it_is_cleared(
     game: Supervision, robot: Robot
 ) -> None:
     assert stalled(game, robot) == ["link-lost"]
@@ -137,17 +137,13 @@ def frozen(seconds: float) -> Health:
     return tuple(link if r.device == "link" else r for r in WELL)
 
 
-def test_a_robot_that_was_frozen_unnoticed_is_told_as_that_and_not_as_a_lost_link(
-    game: Supervision, robot: Robot
-) -> None:
+def test_a_frozen_robot_is_diagnosed_as_frozen(game: Supervision, robot: Robot) -> None:
     robot.readings = frozen(LONG)
     assert codes(game.look()) == ["control-frozen"]
     assert game.halted is not None and "stood still" in game.halted.console
 
 
-def test_a_silence_that_was_a_freeze_is_the_same_fault_known_better(
-    game: Supervision, robot: Robot
-) -> None:
+def test_a_lost_link_that_was_a_freeze_stays_one_fault(game: Supervision, robot: Robot) -> None:
     robot.readings = silent(*ROBOT.devices)
     told = game.look()
     robot.readings = frozen(LONG)
@@ -159,7 +155,7 @@ def test_a_silence_that_was_a_freeze_is_the_same_fault_known_better(
     assert moves(game.clear("Ada") + game.look()) == ["cleared"]
 
 
-def test_what_has_not_come_back_when_staff_clear_the_cause_halts_the_robot_again(
+def test_a_device_still_silent_after_clearing_halts_the_robot_again(
     game: Supervision, robot: Robot
 ) -> None:
     assert stalled(game, robot) == ["link-lost"]
@@ -170,7 +166,7 @@ def test_what_has_not_come_back_when_staff_clear_the_cause_halts_the_robot_again
     assert game.halted is not None and game.halted.code == "laser-disconnected"
 
 
-def test_nothing_of_the_last_game_is_explained_in_the_next(game: Supervision, robot: Robot) -> None:
+def test_a_new_game_forgets_secondary_symptoms(game: Supervision, robot: Robot) -> None:
     stalled(game, robot)
     game.leave()
     game.begin()

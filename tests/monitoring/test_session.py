@@ -1,4 +1,4 @@
-"""A session is told from the log alone: games, Table II, people, faults, what to look after."""
+"""The report of a session from the log alone: games, Table II, people, faults, and open issues."""
 
 from __future__ import annotations
 
@@ -41,7 +41,9 @@ def without(body: Mapping[str, Any], *keys: str) -> dict[str, Any]:
     return {key: value for key, value in body.items() if key not in keys}
 
 
-def test_a_game_is_read_back_as_it_was_played(workspace: Workspace, supervise: Supervise) -> None:
+def test_a_played_game_is_read_back_from_the_log(
+    workspace: Workspace, supervise: Supervise
+) -> None:
     game = supervise(*FAULTS)
     events = play(game)
     (replay,) = read_replays(
@@ -69,7 +71,7 @@ def test_a_game_is_read_back_as_it_was_played(workspace: Workspace, supervise: S
     )
 
 
-def test_the_rows_of_table_two_are_those_that_playing_counts(
+def test_the_rows_of_table_two_match_the_played_games(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     tally = Tally()
@@ -98,7 +100,7 @@ def test_the_four_rows_of_faults_are_there_in_the_papers_order(
     }  # fmt: skip
 
 
-def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
+def test_an_open_fault_is_no_success_and_needs_care(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise("base-failed@6", asks=False), expert=False)
@@ -111,7 +113,7 @@ def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
     assert fault.console in session_page(session)
 
 
-def test_a_recovery_has_success_only_where_nothing_else_was_needed(
+def test_a_recovery_succeeds_only_without_a_further_one(
     workspace: Workspace, supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -127,9 +129,7 @@ def test_a_recovery_has_success_only_where_nothing_else_was_needed(
     assert (row["recovery"], row["success"]) == ("teacher", 0.0), "a teacher was never asked"
 
 
-def test_what_is_over_needs_no_care_and_what_is_borne_does(
-    workspace: Workspace, supervise: Supervise
-) -> None:
+def test_only_tolerated_faults_still_need_care(workspace: Workspace, supervise: Supervise) -> None:
     play(supervise("path-blocked", "arm-failed@5"))
     session = told(workspace)
     assert {fault.code: fault.status for fault in session.faults} == {
@@ -139,7 +139,7 @@ def test_what_is_over_needs_no_care_and_what_is_borne_does(
 
 
 @pytest.mark.slow
-def test_beliefs_go_from_what_they_were_before_the_session_to_what_they_are(
+def test_the_report_shows_posteriors_before_and_after_the_session(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     game = supervise()
@@ -159,7 +159,7 @@ def test_beliefs_go_from_what_they_were_before_the_session_to_what_they_are(
                         for key in workspace.store.responses())  # fmt: skip
 
 
-def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
+def test_a_pending_response_is_not_reported_as_a_no(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
@@ -195,7 +195,7 @@ def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
     assert [title.text for title in titles if title is not None] == ["without an answer"]
 
 
-def test_of_many_games_only_those_with_faults_or_stops_are_told_one_by_one(
+def test_long_reports_list_only_games_with_faults_or_stops(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
@@ -218,7 +218,7 @@ def test_of_many_games_only_those_with_faults_or_stops_are_told_one_by_one(
                for line in lines)  # fmt: skip
 
 
-def test_a_void_response_counts_in_no_belief_and_is_told(
+def test_a_void_response_is_reported_and_counts_in_no_posterior(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
@@ -239,7 +239,7 @@ def test_a_void_response_counts_in_no_belief_and_is_told(
     assert again.interactions == person.interactions, "an answer that was mended counts once"
 
 
-def test_games_of_an_older_tangy_are_told_too(workspace: Workspace, supervise: Supervise) -> None:
+def test_games_of_an_older_version_are_reported(workspace: Workspace, supervise: Supervise) -> None:
     play(supervise())
     with Store.open(workspace.store.folder.parent / "old") as old:
         for event in workspace.store.events():
@@ -264,7 +264,7 @@ def test_games_of_an_older_tangy_are_told_too(workspace: Workspace, supervise: S
         ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
 
 
-def test_a_game_whose_activity_is_gone_is_told_with_less(
+def test_a_game_of_a_missing_activity_is_reported_with_less_detail(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
@@ -277,7 +277,7 @@ def test_a_game_whose_activity_is_gone_is_told_with_less(
     assert session_page(session)
 
 
-def test_a_game_that_was_broken_off_says_so(workspace: Workspace, supervise: Supervise) -> None:
+def test_an_interrupted_game_is_marked(workspace: Workspace, supervise: Supervise) -> None:
     game = supervise()
     game.begin()
     for _ in range(5):
@@ -316,7 +316,7 @@ def test_a_game_is_found_by_number_id_day_and_last(
         find_game(games, "all")
 
 
-def test_a_page_stands_by_itself_and_tells_every_fault_and_move(
+def test_a_page_is_self_contained_and_lists_every_fault(
     workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise(*FAULTS))
@@ -337,9 +337,7 @@ def test_a_page_stands_by_itself_and_tells_every_fault_and_move(
             assert all(0 <= place <= width for place in places)
 
 
-def test_names_on_a_page_are_text_and_nothing_else(
-    workspace: Workspace, supervise: Supervise
-) -> None:
+def test_markup_in_names_is_escaped_on_a_page(workspace: Workspace, supervise: Supervise) -> None:
     workspace.store.rename(workspace.people[0].id, "<b>&'\"Rosa")
     names = {**workspace.names, workspace.people[0].id: "<b>&'\"Rosa"}
     play(supervise())
@@ -354,9 +352,7 @@ def test_names_on_a_page_are_text_and_nothing_else(
     ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
 
 
-def test_everybody_who_was_asked_is_in_the_moments(
-    workspace: Workspace, supervise: Supervise
-) -> None:
+def test_the_moments_include_every_response(workspace: Workspace, supervise: Supervise) -> None:
     play(supervise())
     (replay,) = told(workspace).replays
     kinds = {type(moment.what) for moment in replay.moments}
@@ -365,9 +361,7 @@ def test_everybody_who_was_asked_is_in_the_moments(
     assert [moment.to_json()["kind"] for moment in replay.moments].count("step") == len(replay.done)
 
 
-def test_what_was_brought_about_on_purpose_is_told_as_that(
-    workspace: Workspace, learnt: Policy
-) -> None:
+def test_injected_faults_are_marked(workspace: Workspace, learnt: Policy) -> None:
     game = workspace.supervision(learnt, 3, injections=["voice-dead@2"])
     game.begin()
     game.step()

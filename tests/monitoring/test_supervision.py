@@ -1,4 +1,4 @@
-"""Supervision: the doors by which people act on a game, and what must never get past them."""
+"""Supervision: the actions of people on a game, and their limits."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tests.support.games import acts, codes, ended, moves, play, until, world_of
 from tests.support.staff_lines import play_by_turns
 
 
-def test_no_name_of_a_person_gets_into_the_log(
+def test_the_log_contains_no_names(
     supervise: Supervise, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -45,7 +45,7 @@ def test_no_name_of_a_person_gets_into_the_log(
     assert read == told
 
 
-def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
+def test_a_failed_write_to_the_log_does_not_prevent_a_halt(
     supervise: Supervise, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     game = supervise(seed=3)
@@ -72,7 +72,7 @@ def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
     assert game.halted is not None
 
 
-def test_what_came_up_while_the_teacher_was_thinking_comes_before_the_answer(
+def test_a_fault_during_a_question_precedes_the_answer(
     supervise: Supervise,
 ) -> None:
     game = supervise("no-effect@1", seed=3)
@@ -86,7 +86,7 @@ def test_what_came_up_while_the_teacher_was_thinking_comes_before_the_answer(
     assert game.halted is not None
 
 
-def test_a_device_that_is_not_even_mentioned_is_silent(
+def test_a_device_without_a_reading_is_silent(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     game = supervise("laser-disconnected@2", seed=3)
@@ -101,7 +101,7 @@ def test_a_device_that_is_not_even_mentioned_is_silent(
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
-def test_an_age_that_is_no_time_is_silence(
+def test_an_invalid_age_is_silence(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, value: float
 ) -> None:
     game = supervise(seed=3)
@@ -111,7 +111,7 @@ def test_an_age_that_is_no_time_is_silence(
     assert codes(game.look()) == ["camera-disconnected"]
 
 
-def test_a_measurement_that_is_no_number_is_an_error(
+def test_a_measurement_of_nan_is_diagnosed_as_a_fault(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     game = supervise(seed=3)
@@ -138,7 +138,7 @@ def test_an_unexplained_error_cannot_be_cleared_while_it_lasts(
     assert moves(game.clear("Ada")) == ["still there"]
 
 
-def test_what_nobody_can_mend_gets_to_the_expert_and_then_ends_the_game(
+def test_an_unmendable_fault_reaches_the_expert_and_ends_the_game(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
@@ -151,7 +151,7 @@ def test_what_nobody_can_mend_gets_to_the_expert_and_then_ends_the_game(
     assert stopped is not None and stopped.endswith("It was cleared 5 times and came back.")
 
 
-def test_what_a_rule_explains_cannot_be_called_all_right(supervise: Supervise) -> None:
+def test_a_fault_with_a_rule_cannot_be_accepted(supervise: Supervise) -> None:
     game = supervise("camera-frozen@1", seed=4)
     game.begin()
     until(game, lambda now: now.halted)
@@ -160,7 +160,7 @@ def test_what_a_rule_explains_cannot_be_called_all_right(supervise: Supervise) -
     assert game.accept("Ada") == []
 
 
-def test_nothing_is_logged_of_a_game_after_its_end(
+def test_no_event_is_logged_after_the_end_of_a_game(
     supervise: Supervise, workspace: Workspace
 ) -> None:
     length = len(acts(play(supervise(seed=3))))
@@ -170,7 +170,7 @@ def test_nothing_is_logged_of_a_game_after_its_end(
 
 
 @pytest.mark.parametrize("kind", sorted(name for name, kind in KINDS.items() if kind.stops))
-def test_what_stops_the_robot_breaks_off_what_it_does_and_is_seen_at_once(
+def test_a_stopping_fault_interrupts_the_behaviour_and_is_noticed_at_once(
     supervise: Supervise, kind: str
 ) -> None:
     game = supervise(f"{kind}@1", seed=3)
@@ -183,7 +183,7 @@ def test_what_stops_the_robot_breaks_off_what_it_does_and_is_seen_at_once(
     assert all(float(age) <= faulty_world.NOTICED for age in ages)
 
 
-def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_once(
+def test_an_answer_that_contradicts_demonstrations_holds_once(
     workspace: Workspace, learnt: Policy
 ) -> None:
     game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
@@ -199,7 +199,7 @@ def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_onc
     assert game.policy.decide(game.world.observe().situation).sure
 
 
-def test_what_was_called_all_right_can_be_taken_back(workspace: Workspace, learnt: Policy) -> None:
+def test_an_accepted_effect_can_be_revoked(workspace: Workspace, learnt: Policy) -> None:
     def unexpected() -> list[str]:
         return codes(play(workspace.supervision(learnt, 4, asks=True, injections=["no-effect@1"])))
 
@@ -217,21 +217,21 @@ def test_what_was_called_all_right_can_be_taken_back(workspace: Workspace, learn
     assert unexpected() == ["unexplained"]
 
 
-def test_what_only_excludes_another_fault_is_not_told_as_its_evidence(supervise: Supervise) -> None:
+def test_excluding_conditions_are_not_shown_as_evidence(supervise: Supervise) -> None:
     game = supervise("camera-frozen@2", seed=3)
     game.begin()
     until(game, lambda now: now.halted)
     assert game.faults[0].why == "head camera: time without a new picture (s): 2 (limit 1)"
 
 
-def test_by_lines_no_game_is_begun_after_what_nobody_cleared(supervise: Supervise) -> None:
+def test_no_game_begins_by_lines_after_an_uncleared_fault(supervise: Supervise) -> None:
     game = supervise("link-lost@3", seed=3)
     said = play_by_turns(game, "quit", games=2)
     assert "Tangy begins no other game: nobody has cleared 'Link to the robot lost'." in said
     assert "Game 2 begins." not in said
 
 
-def test_by_lines_who_says_stop_while_it_stands_still_hears_so(supervise: Supervise) -> None:
+def test_stop_by_lines_during_a_halt_is_answered(supervise: Supervise) -> None:
     game = supervise("link-lost@3", seed=3)
     said = play_by_turns(game, "stop the bingo", "quit")
     assert any(line.startswith("Tangy stands still. Type: seen") for line in said)
@@ -239,7 +239,7 @@ def test_by_lines_who_says_stop_while_it_stands_still_hears_so(supervise: Superv
     assert not any("I do not know" in line for line in said)
 
 
-def test_an_answer_that_holds_once_is_put_down_to_who_gave_it(supervise: Supervise) -> None:
+def test_a_one_time_answer_names_its_author(supervise: Supervise) -> None:
     game = supervise("no-effect@1", seed=3)
     said = play_by_turns(game, "call number", "y")
     (done,) = [line for line in said if line.startswith("2. ")]
