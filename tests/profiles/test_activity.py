@@ -1,4 +1,4 @@
-"""What an activity's TOML says is what Tangy knows, and every mistake in it is one line."""
+"""Reading an activity's TOML file; every mistake is reported in one line."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ def test_bingo_has_the_papers_eleven_behaviours_four_strategies_and_five_user_st
     assert activity.stages == ("start", "end", "help", "navigate", "socialize", "facilitate")
 
 
-def test_table_two_has_eleven_rows_and_nothing_is_expected_elsewhere(activity: Activity) -> None:
+def test_table_two_has_exactly_eleven_expected_behaviours(activity: Activity) -> None:
     assert set(activity.expected) == set(activity.situations)
     assert len(activity.situations) == 11
     assert set(activity.expected.values()) == PAPERS_BEHAVIOURS
 
 
-def test_everything_that_persuades_is_said_differently_in_every_strategy(
+def test_persuading_behaviours_have_a_different_speech_for_each_strategy(
     activity: Activity,
 ) -> None:
     persuading = [b for b in activity.behaviours.values() if b.persuades]
@@ -66,7 +66,7 @@ def test_everything_that_persuades_is_said_differently_in_every_strategy(
         assert len(set(behaviour.speech.values())) == len(activity.strategies), behaviour.name
 
 
-def test_an_action_is_a_posture_a_speech_an_image_a_place_and_a_strategy(
+def test_an_action_has_posture_speech_image_place_and_strategy(
     activity: Activity,
 ) -> None:
     behaviour = activity.behaviours["remove markers"]
@@ -79,9 +79,7 @@ def test_an_action_is_a_posture_a_speech_an_image_a_place_and_a_strategy(
     assert activity.action(behaviour, None, None).strategy == activity.plain_strategy == "neutral"
 
 
-def test_strategies_that_press_people_are_known_where_a_file_does_not_name_them(
-    tmp_path: Path, activity: Activity
-) -> None:
+def test_pressing_strategies_have_a_default(tmp_path: Path, activity: Activity) -> None:
     (line,) = [line for line in SHIPPED.splitlines() if line.startswith("pressing_strategies")]
     quiet = read_activity(written(tmp_path, SHIPPED.replace(line, "")))
     assert quiet.pressing == activity.pressing == ("scarcity",)
@@ -90,7 +88,7 @@ def test_strategies_that_press_people_are_known_where_a_file_does_not_name_them(
     assert none.pressing == ()
 
 
-def test_every_speech_and_screen_can_be_filled_in(activity: Activity, lanterns: Activity) -> None:
+def test_every_template_can_be_filled(activity: Activity, lanterns: Activity) -> None:
     for one in (activity, lanterns):
         for behaviour in one.behaviours.values():
             assert behaviour.effect in EFFECTS
@@ -102,7 +100,7 @@ def test_every_speech_and_screen_can_be_filled_in(activity: Activity, lanterns: 
                 assert "{" not in text
 
 
-def test_of_many_numbers_few_are_said_and_all_are_shown(activity: Activity) -> None:
+def test_few_of_many_numbers_are_spoken_and_all_are_shown(activity: Activity) -> None:
     request, deck = activity.behaviours["mark numbers"], activity.deck
     action = activity.action(request, "user1", None)
 
@@ -115,14 +113,14 @@ def test_of_many_numbers_few_are_said_and_all_are_shown(activity: Activity) -> N
     assert shown.count("-") == 25
 
 
-def test_a_rule_for_many_numbers_has_its_words(tmp_path: Path) -> None:
+def test_a_limit_of_spoken_numbers_needs_its_words(tmp_path: Path) -> None:
     (line,) = [line for line in SHIPPED.splitlines() if line.startswith("more_numbers")]
     with pytest.raises(ProfileError, match="more_numbers"):
         read_activity(written(tmp_path, SHIPPED.replace(line, "")))
 
 
 @given(st.text())
-def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
+def test_braces_in_a_name_are_not_filled(name: str) -> None:
     activity = load_activity("bingo")
     assert activity.fill("{name} {call} {numbers}", name, (5, 16)) == f"{name} B-5 B-5, I-16"
     assert activity.fill("{name}", name, ()) == name
@@ -193,7 +191,7 @@ def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
         ("[[expected]]", "[[expacted]]", ("expacted", "'expected'?")),
     ],
 )  # fmt: skip
-def test_a_mistake_is_one_line_with_file_key_value_and_the_nearest_word(
+def test_a_mistake_is_reported_in_one_line_with_key_value_and_suggestion(
     tmp_path: Path, old: str, new: str, said: tuple[str, ...]
 ) -> None:
     assert old in SHIPPED
@@ -215,13 +213,13 @@ def test_a_mistake_is_one_line_with_file_key_value_and_the_nearest_word(
         (SHIPPED.replace("[strategies]", "[strategies]\n[other]"), "strategy"),
     ],
 )
-def test_a_file_that_is_no_activity_is_refused_in_one_line(
+def test_an_invalid_file_is_refused_in_one_line(
     tmp_path: Path, text: str | bytes, said: str
 ) -> None:
     assert said in refusal(tmp_path, text)
 
 
-def test_a_file_that_is_not_there_is_refused_by_its_path(tmp_path: Path) -> None:
+def test_a_missing_file_is_refused_with_its_path(tmp_path: Path) -> None:
     for name in (str(tmp_path / "none.toml"), str(tmp_path / ("n" * 300 + ".toml"))):
         with pytest.raises(ProfileError, match=r"none\.toml: there is no such|cannot be read"):
             load_activity(name)
@@ -238,7 +236,7 @@ def test_a_file_that_is_not_there_is_refused_by_its_path(tmp_path: Path) -> None
 
 
 @given(st.data())
-def test_a_file_with_any_line_lost_or_doubled_is_read_or_refused_in_one_line(
+def test_a_file_with_a_lost_or_doubled_line_causes_no_traceback(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
 ) -> None:
     lines = SHIPPED.splitlines()
@@ -253,7 +251,7 @@ def test_a_file_with_any_line_lost_or_doubled_is_read_or_refused_in_one_line(
         assert str(error).isprintable()
 
 
-def test_an_end_that_nobody_wins_comes_with_and_without_a_request(lanterns: Activity) -> None:
+def test_a_final_stage_without_winner_exists_with_and_without_a_request(lanterns: Activity) -> None:
     assert Situation("leaving", "AR", "hidden") in lanterns.situations
     assert Situation("leaving", "ANR", "hidden") in lanterns.situations
 

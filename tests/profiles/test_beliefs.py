@@ -1,4 +1,4 @@
-"""Beliefs: Beta(1, 1) at first, Eq. 2 after each response, P(best) by integration."""
+"""Posteriors: Beta(1, 1) as prior, Eq. 2 after each response, P(best) by integration."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_profiles.beliefs import Beta, leading, probability_best, settled, uni
 counts = st.tuples(st.integers(0, 2000), st.integers(0, 2000))
 
 
-def test_a_stranger_is_believed_to_comply_with_anything_equally() -> None:
+def test_the_prior_is_uniform_for_every_strategy() -> None:
     beliefs = uniform_beliefs(["praise", "neutral", "scarcity"])
     assert set(beliefs.values()) == {Beta(1, 1)}
     assert all(isclose(p, 1 / 3) for p in probability_best(beliefs).values())
@@ -35,7 +35,7 @@ def test_a_response_adds_one_to_alpha_or_to_beta(responses: list[bool]) -> None:
     assert belief.mean == (1 + sum(responses)) / (2 + len(responses))
 
 
-def test_updating_leaves_the_old_belief_as_it_was() -> None:
+def test_updating_returns_a_new_posterior() -> None:
     belief = Beta(2, 3)
     belief.updated(True)
     assert belief == Beta(2, 3)
@@ -43,7 +43,7 @@ def test_updating_leaves_the_old_belief_as_it_was() -> None:
 
 @pytest.mark.slow
 @given(counts)
-def test_the_density_is_a_distribution_around_the_mean(count: tuple[int, int]) -> None:
+def test_the_density_integrates_to_one_and_gives_the_mean(count: tuple[int, int]) -> None:
     belief = Beta(1 + count[0], 1 + count[1])
     points = 20_000
     density = belief.density(points)
@@ -53,7 +53,7 @@ def test_the_density_is_a_distribution_around_the_mean(count: tuple[int, int]) -
 
 
 @given(st.dictionaries(st.text(max_size=3), counts, min_size=1, max_size=6))
-def test_the_chances_of_being_best_sum_to_one(profile: dict[str, tuple[int, int]]) -> None:
+def test_the_probabilities_of_being_best_sum_to_one(profile: dict[str, tuple[int, int]]) -> None:
     best = probability_best({s: Beta(1 + a, 1 + b) for s, (a, b) in profile.items()})
     assert list(best) == list(profile)
     assert isclose(sum(best.values()), 1)
@@ -61,7 +61,7 @@ def test_the_chances_of_being_best_sum_to_one(profile: dict[str, tuple[int, int]
 
 
 @given(counts, st.permutations(["a", "b", "c"]))
-def test_the_chance_of_being_best_depends_on_the_belief_and_not_on_its_place(
+def test_the_probability_of_being_best_ignores_the_order(
     count: tuple[int, int], order: list[str]
 ) -> None:
     beliefs = {"a": Beta(1 + count[0], 1 + count[1]), "b": Beta(4, 2), "c": Beta(2, 2)}
@@ -70,7 +70,7 @@ def test_the_chance_of_being_best_depends_on_the_belief_and_not_on_its_place(
 
 
 @given(counts)
-def test_complying_never_makes_a_strategy_less_likely_the_best(count: tuple[int, int]) -> None:
+def test_compliance_never_lowers_the_probability_of_being_best(count: tuple[int, int]) -> None:
     belief, others = Beta(1 + count[0], 1 + count[1]), {"b": Beta(9, 3), "c": Beta(2, 5)}
     now = probability_best({"a": belief, **others})["a"]
     assert probability_best({"a": belief.updated(True), **others})["a"] >= now - 1e-9
@@ -87,7 +87,7 @@ def test_complying_never_makes_a_strategy_less_likely_the_best(count: tuple[int,
         {"a": (1, 9), "b": (1, 1)},
     ],
 )
-def test_the_chance_of_being_best_is_what_drawing_finds(
+def test_the_probability_of_being_best_matches_a_simulation(
     profile: dict[str, tuple[int, int]],
 ) -> None:
     beliefs = {s: Beta(a, b) for s, (a, b) in profile.items()}
@@ -102,7 +102,7 @@ def test_the_chance_of_being_best_is_what_drawing_finds(
 
 
 @given(st.integers(1, 60))
-def test_quantiles_are_those_of_beliefs_that_can_be_written_down(n: int) -> None:
+def test_quantiles_match_closed_forms(n: int) -> None:
     for share in (0.05, 0.5, 0.95):
         assert Beta(n, 1).quantile(share) == pytest.approx(share ** (1 / n))
         assert Beta(1, n).quantile(share) == pytest.approx(1 - (1 - share) ** (1 / n))
@@ -110,7 +110,7 @@ def test_quantiles_are_those_of_beliefs_that_can_be_written_down(n: int) -> None
 
 @pytest.mark.slow
 @given(st.tuples(st.integers(0, 300), st.integers(0, 300)))
-def test_the_truth_lies_in_the_interval_with_nine_in_ten(pair: tuple[int, int]) -> None:
+def test_the_interval_has_ninety_percent_of_the_probability(pair: tuple[int, int]) -> None:
     belief = Beta(1 + pair[0], 1 + pair[1])
     low, high = belief.interval()
     points = 20_000
@@ -123,9 +123,7 @@ def test_the_truth_lies_in_the_interval_with_nine_in_ten(pair: tuple[int, int]) 
 
 
 @given(st.lists(st.booleans(), max_size=60), st.floats(1, 5), st.floats(1, 5))
-def test_counts_stay_whole_whatever_was_lent_or_forgotten(
-    responses: list[bool], alpha: float, beta: float
-) -> None:
+def test_counts_stay_exact_with_any_prior(responses: list[bool], alpha: float, beta: float) -> None:
     belief = Beta(alpha, beta, (0, 0))
     for complied in responses:
         belief = belief.updated(complied)
@@ -134,7 +132,7 @@ def test_counts_stay_whole_whatever_was_lent_or_forgotten(
     assert belief.alpha == pytest.approx(alpha + responses.count(True))
 
 
-def test_one_that_leads_alone_is_settled_from_nine_in_ten() -> None:
+def test_a_strategy_is_settled_at_ninety_percent() -> None:
     assert settled({"a": 0.9, "b": 0.1}) == "a"
     assert settled({"a": 0.899, "b": 0.101}) is None
     assert leading({"a": 0.6, "b": 0.4}) == "a"

@@ -1,4 +1,4 @@
-"""Cards: what may stand on them, what wins, and how a card is judged."""
+"""Cards: their numbers, winning lines, and card states."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_dealing_and_shuffling_take_every_number_a_generator_can_give(constant: 
     assert len(set(DECK.shuffled(lambda: constant))) == 75
 
 
-def test_every_number_comes_about_equally_often_and_in_every_row() -> None:
+def test_dealt_numbers_are_uniform_over_numbers_and_rows() -> None:
     rng = Random(7)
     seen: dict[tuple[int, int], int] = {}
     for _ in range(3000):
@@ -79,7 +79,7 @@ def test_every_number_comes_about_equally_often_and_in_every_row() -> None:
     assert 120 < min(seen.values()) <= max(seen.values()) < 290  # 200 each, SD 14
 
 
-def test_every_number_is_called_at_any_time_equally_often() -> None:
+def test_the_order_of_calls_is_uniform() -> None:
     rng = Random(8)
     at: dict[tuple[int, int], int] = {}
     for _ in range(5000):
@@ -91,7 +91,7 @@ def test_every_number_is_called_at_any_time_equally_often() -> None:
 
 
 @given(decks())
-def test_lines_are_what_the_patterns_say(deck: Deck) -> None:
+def test_lines_match_the_patterns(deck: Deck) -> None:
     rows, width = deck.rows, len(deck.columns)
     wanted: list[set[tuple[int, int]]] = []
     if "row" in deck.patterns:
@@ -115,7 +115,7 @@ def test_lines_are_what_the_patterns_say(deck: Deck) -> None:
 
 
 @given(decks(), masks)
-def test_a_card_wins_with_a_whole_line_and_with_nothing_less(deck: Deck, mask: int) -> None:
+def test_a_card_wins_only_with_a_full_line(deck: Deck, mask: int) -> None:
     whole = [cells_of(line, deck) <= cells_of(mask, deck) for line in deck.lines]
     assert deck.wins(mask) == any(whole)
     assert all(deck.wins(line) for line in deck.lines)
@@ -150,7 +150,7 @@ def test_a_full_line_with_an_uncalled_number_is_no_win() -> None:
 
 
 @given(masks, masks, st.lists(st.integers(0, 24), max_size=4, unique=True))
-def test_cells_nobody_knows_matter_only_where_they_could_change_the_state(
+def test_hidden_cells_matter_only_if_they_could_change_the_state(
     marked: int, called: int, unknown: list[int]
 ) -> None:
     cells = [1 << cell for cell in unknown]
@@ -165,7 +165,7 @@ def test_cells_nobody_knows_matter_only_where_they_could_change_the_state(
 
 
 @given(st.permutations(BINGO.card_states[:-1]), masks, masks)
-def test_the_first_state_that_agrees_is_the_one(
+def test_the_first_matching_card_state_applies(
     order: list[CardState], marked: int, called: int
 ) -> None:
     last = BINGO.card_states[-1]

@@ -1,4 +1,4 @@
-"""Effects, methods and states of devices are closed sets: a place that forgets one is named."""
+"""Effects, methods and device states are closed sets: a place that lacks one is named."""
 
 from __future__ import annotations
 
@@ -53,23 +53,23 @@ def missing(place: str, known: Collection[str], told: Collection[str]) -> str:
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
-def test_an_effect_is_filled_by_both_worlds_and_by_people_on_the_bench(effect: str) -> None:
+def test_every_effect_is_implemented_by_both_worlds_and_the_bench(effect: str) -> None:
     assert {path for path, _, _ in matches()} >= set(WORLDS)
     forgotten = [missing(f"{path}:{line}", [effect], told) for path, line, told in matches()]
     assert not any(forgotten), "; ".join(filter(None, forgotten))
 
 
-def test_no_world_fills_an_effect_that_there_is_not() -> None:
+def test_no_world_implements_an_unknown_effect() -> None:
     assert {word for _, _, told in matches() for word in told} == set(EFFECTS)
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_a_method_of_persuasion_can_be_made_and_is_said_in_words(name: str) -> None:
+def test_every_method_of_persuasion_has_an_implementation_and_words(name: str) -> None:
     assert method_of(PersuasionConfig(name)).words
     assert name in people.METHODS, f"METHODS of {people.__name__} has no words for {name!r}"
 
 
-def test_the_state_of_a_device_is_ranked_and_said_in_words() -> None:
+def test_every_device_state_has_a_rank_and_words() -> None:
     states = get_args(DeviceState)
     told: dict[str, Collection[str]] = {
         "STATES of tangy_profiles.health": STATES,

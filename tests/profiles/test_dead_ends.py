@@ -1,4 +1,4 @@
-"""Where games stay from which none ends, against a search from every state."""
+"""Dead ends of games, compared with a search from every state."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def reached(later: dict[Node, list[Node]], begin: Node) -> set[Node]:
     return found
 
 
-def test_the_loop_is_the_first_set_of_states_that_nothing_leaves() -> None:
+def test_the_loop_is_the_first_set_of_states_without_exit() -> None:
     draw, several = Random(5), 0
     for _ in range(300):
         nodes: list[Node] = [(True, number) for number in range(draw.randint(1, 9))]

@@ -1,4 +1,4 @@
-"""A search of an activity's games finds what can never be, lacks a word, or never ends."""
+"""A search of an activity's games finds unreachable parts, missing words, and endless games."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def way_there(folder: Path, *changes: tuple[str, str]) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DECLARED)
-def test_what_ships_has_no_flaw(name: str) -> None:
+def test_shipped_activities_have_no_flaw(name: str) -> None:
     assert findings(declared(name), Limit(states=5_000, seconds=10.0)).flaws == ()
 
 
 @pytest.mark.slow
-def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Path) -> None:
+def test_unreachable_stages_and_unset_flags_are_flaws(tmp_path: Path) -> None:
     never = '{ name = "never", when = ["lost is yes"] },\n  { name = "over"'
     changes = (('{ name = "over"', never), ('flags = ["greeted"', 'flags = ["lost", "greeted"'))
     assert flaws(tmp_path, *changes) == {
@@ -44,7 +44,7 @@ def test_a_stage_that_no_game_comes_to_and_a_flag_that_nothing_sets(tmp_path: Pa
 
 
 @pytest.mark.slow
-def test_a_game_that_cannot_end(tmp_path: Path) -> None:
+def test_a_game_that_cannot_end_is_a_flaw(tmp_path: Path) -> None:
     needs = ('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]')
     assert any(flaw == "never ends" for flaw, _ in flaws(tmp_path, needs))
     lines = way_there(tmp_path, needs)
@@ -53,7 +53,7 @@ def test_a_game_that_cannot_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> None:
+def test_a_game_that_never_ends_as_expected_is_a_flaw(tmp_path: Path) -> None:
     round_and_round = (
         '["over", "told is no", "tell scores"],',
         '["over", "told is no", "allow time"],',
@@ -65,7 +65,7 @@ def test_a_game_that_does_not_end_as_it_is_expected_to_go(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-def test_where_no_behaviour_is_possible(tmp_path: Path) -> None:
+def test_a_situation_without_a_possible_behaviour_is_a_flaw(tmp_path: Path) -> None:
     text = SHIPPED.read_text(encoding="utf-8")
     headers = [line for line in text.splitlines() if line.startswith("[behaviours.")]
     nothing = [(line, f'{line}\nneeds = ["hinted is no"]') for line in headers]
@@ -77,24 +77,24 @@ def test_where_no_behaviour_is_possible(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_text_that_lacks_a_word_when_it_is_said(tmp_path: Path) -> None:
+def test_a_text_with_a_missing_word_is_a_flaw(tmp_path: Path) -> None:
     early = flaws(tmp_path, ("Welcome to the quiz!", "Welcome! The first is: {ask}"))
     assert early == {("text lacks a word", "welcome everyone")}
 
 
 @pytest.mark.slow
-def test_a_fact_that_is_never_set_back(tmp_path: Path) -> None:
+def test_a_fact_that_is_never_cleared_is_a_flaw(tmp_path: Path) -> None:
     assert ("fact never cleared", "answer") in flaws(tmp_path, ('"clear answer", ', ""))
 
 
 @pytest.mark.slow
-def test_a_behaviour_that_is_never_possible(tmp_path: Path) -> None:
+def test_a_behaviour_that_is_never_possible_is_a_flaw(tmp_path: Path) -> None:
     needs = 'needs = ["open is yes", "open is no"]\n'
     never = ('[behaviours."tell scores"]\n', f'[behaviours."tell scores"]\n{needs}')
     assert ("behaviour never possible", "tell scores") in flaws(tmp_path, never)
 
 
-def test_a_search_that_is_cut_says_so_and_what_it_had_not_met() -> None:
+def test_a_cut_search_names_its_limit_and_what_it_did_not_reach() -> None:
     found = findings(declared("trivia"), Limit(states=40, seconds=10.0))
     assert {one.cut for one in found.searches} == {"states"}
     assert all(0 < one.states <= 40 for one in found.searches)
@@ -103,7 +103,7 @@ def test_a_search_that_is_cut_says_so_and_what_it_had_not_met() -> None:
 
 
 @pytest.mark.slow
-def test_a_search_that_is_cut_says_which_facts_make_the_most_states() -> None:
+def test_a_cut_search_names_the_facts_with_the_most_states() -> None:
     found = findings(declared("exercises"), Limit(states=2_000, seconds=30.0))
     named = {share.name: share.times for one in found.searches for share in one.shares}
     assert "asking" in named
@@ -115,7 +115,7 @@ def test_a_search_that_is_cut_says_which_facts_make_the_most_states() -> None:
 
 
 @pytest.mark.slow
-def test_a_search_ends_with_its_time() -> None:
+def test_a_search_ends_at_its_time_limit() -> None:
     found = findings(declared("exercises"), Limit(states=12_000, seconds=0.2))
     whole = findings(declared("trivia"))
     assert found.searches[-1].cut == "time"

@@ -1,4 +1,4 @@
-"""An activity that is declared by facts: what its file says, and each mistake with its place."""
+"""Reading an activity declared by facts; each mistake is reported with its place."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def place(text: str, wanted: str) -> str:
     return f"{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
 
 
-def test_every_mistake_is_told_at_once_with_its_place_and_the_nearest_word(folder: Path) -> None:
+def test_all_mistakes_are_reported_at_once_with_place_and_suggestion(folder: Path) -> None:
     changes = (
         ('about = "first asking"', 'about = "frst asking"'),
         ('"set told yes"', '"set told yess"'),
@@ -86,7 +86,9 @@ def test_every_mistake_is_told_at_once_with_its_place_and_the_nearest_word(folde
         ("{name} gave an answer", "{nmae} gave an answer", "{name}"),
     ],
 )
-def test_what_cannot_be_is_refused_by_name(folder: Path, old: str, new: str, told: str) -> None:
+def test_impossible_declarations_are_refused_by_name(
+    folder: Path, old: str, new: str, told: str
+) -> None:
     assert any(told in line for line in mistakes(folder, (old, new)))
 
 
@@ -97,7 +99,7 @@ def test_what_cannot_be_is_refused_by_name(folder: Path, old: str, new: str, tol
         ('{ name = "listen", words', '{ name = "lisetn", words', "stages[4].name"),
     ],
 )
-def test_a_name_that_expected_spells_otherwise_is_told_once_where_it_is_defined(
+def test_a_misspelt_name_is_reported_once_at_its_definition(
     folder: Path, right: str, wrong: str, key: str
 ) -> None:
     names = [re.findall(r'"([^"]*)"', one)[0] for one in (right, wrong)]
@@ -109,14 +111,14 @@ def test_a_name_that_expected_spells_otherwise_is_told_once_where_it_is_defined(
     assert not any("expected:" in line for line in rest)
 
 
-def test_what_may_cause_other_mistakes_comes_first_at_its_place(folder: Path) -> None:
+def test_a_mistake_that_causes_others_comes_first(folder: Path) -> None:
     first, *_ = mistakes(folder, ("[behaviours.", "[behavours."))
     row = place(TEXT.replace("[behaviours.", "[behavours."), "[behavours.").partition(":")[0]
     assert first.startswith(f"mine.toml:{row}:")
     assert "'behaviours'" in first
 
 
-def test_an_activity_without_a_name_is_called_like_its_file(folder: Path) -> None:
+def test_an_activity_without_a_name_is_named_after_its_file(folder: Path) -> None:
     named = re.search(r"(?m)^name = .*\n", TEXT)
     assert named is not None
     path = folder / "garden-quiz.toml"
@@ -125,7 +127,7 @@ def test_an_activity_without_a_name_is_called_like_its_file(folder: Path) -> Non
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_what_ships_has_80_lines_at_most(name: str) -> None:
+def test_shipped_declarations_have_at_most_80_lines(name: str) -> None:
     assert shipped_activities()[name].read_text(encoding="utf-8").count("\n") <= 80
 
 
@@ -139,19 +141,19 @@ def first_right(folder: Path, right: str, third: str = "Venus") -> str:
 
 
 @pytest.mark.parametrize("right", ["Saturn", "saturn", "b", "B", "b|the one with rings"])
-def test_a_right_answer_is_the_words_of_an_option_or_its_letter(folder: Path, right: str) -> None:
+def test_a_right_answer_is_given_by_words_or_letter(folder: Path, right: str) -> None:
     assert first_right(folder, right).casefold().partition("|")[0] == "saturn"
 
 
 @pytest.mark.parametrize("right", ["d", "", "c"])
-def test_a_right_answer_that_is_no_option_is_a_mistake(folder: Path, right: str) -> None:
+def test_a_right_answer_outside_the_options_is_a_mistake(folder: Path, right: str) -> None:
     with pytest.raises(MistakesError) as caught:
         first_right(folder, right, third="")  # the letter of an option without words is none
     (line,) = caught.value.lines
     assert f"row 2: right {right!r} is none of its options" in line
 
 
-def test_a_mark_of_the_byte_order_and_blank_lines_are_no_items(folder: Path) -> None:
+def test_a_byte_order_mark_and_blank_lines_are_ignored(folder: Path) -> None:
     items = (folder / "trivia.csv").read_text(encoding="utf-8")
     (folder / "trivia.csv").write_text("\ufeff" + items + "\n,,,,,\n", encoding="utf-8")
     (folder / "mine.toml").write_text(TEXT, encoding="utf-8")
@@ -160,7 +162,7 @@ def test_a_mark_of_the_byte_order_and_blank_lines_are_no_items(folder: Path) -> 
 
 @given(token=st.sampled_from(TOKENS), how=st.sampled_from(("twist", "drop", "double", "number")))
 @tried(3_000)
-def test_a_word_that_is_mistaken_is_a_line_and_never_a_traceback(
+def test_a_mistaken_word_is_reported_in_a_line_without_traceback(
     tmp_path_factory: pytest.TempPathFactory, token: tuple[int, int], how: str
 ) -> None:
     begin, end = token
@@ -185,7 +187,7 @@ def test_a_word_that_is_mistaken_is_a_line_and_never_a_traceback(
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_a_misspelt_key_is_named_first_with_the_right_one(name: str, tmp_path: Path) -> None:
+def test_a_misspelt_key_is_reported_first_with_the_right_one(name: str, tmp_path: Path) -> None:
     text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     for table in FOLDER.glob("*.csv"):
         shutil.copy(table, tmp_path)

@@ -1,4 +1,4 @@
-"""What can be said now begins with what fits the moment, as its file would have it."""
+"""Suggestions in declared activities: possible behaviours that fit the situation come first."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_FIRST = 0.6
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_what_is_expected_is_among_the_first(name: str) -> None:
+def test_the_expected_behaviour_is_among_the_first_suggestions(name: str) -> None:
     activity, taught = declared(name), expected_moves(declared(name))
     among = steps = 0
     for seed in range(4):
@@ -34,7 +34,7 @@ def test_what_is_expected_is_among_the_first(name: str) -> None:
     assert among >= MOST_FIRST * steps
 
 
-def test_only_behaviours_that_are_possible_now_are_among_them() -> None:
+def test_only_possible_behaviours_are_suggested() -> None:
     shipped = declared("trivia").declaration
     needs = (FactCondition("", "open", "is", "yes"),)
     hint = replace(shipped.behaviours["give hint"], needs=needs)

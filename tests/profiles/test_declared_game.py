@@ -1,4 +1,4 @@
-"""The interpreter of declared activities: facts change by what is observed and done, only so."""
+"""The interpreter of declared activities: only observations and behaviours change facts."""
 
 from __future__ import annotations
 
@@ -40,9 +40,7 @@ def game(trivia: DeclaredActivity) -> DeclaredGame:
 
 
 @pytest.mark.parametrize("answer", ["b", "B", "eight", "Eight!"])
-def test_a_letter_or_the_words_of_the_right_answer_are_right(
-    game: DeclaredGame, answer: str
-) -> None:
+def test_a_right_answer_by_letter_or_words_is_right(game: DeclaredGame, answer: str) -> None:
     assert game.observe("answer", "ann", answer)
     assert game.seen() == ("judge", ("right", "no"))
 
@@ -53,14 +51,14 @@ def test_another_option_is_wrong(game: DeclaredGame) -> None:
 
 
 @pytest.mark.parametrize(("answer", "certainty"), [("b", 0.5), ("eleventy", 1.0), ("", 1.0)])
-def test_what_is_not_sure_is_never_judged(
+def test_an_uncertain_answer_is_never_judged(
     game: DeclaredGame, answer: str, certainty: float
 ) -> None:
     assert not game.observe("answer", "ann", answer, certainty)
     assert game.value("answer", "ann") == "none"
 
 
-def test_an_answer_of_somebody_else_does_not_count_for_whose_turn_it_is(game: DeclaredGame) -> None:
+def test_an_answer_of_another_person_does_not_count_for_the_turn(game: DeclaredGame) -> None:
     game.observe("answer", "ben", "eight")
     assert game.stage()[0].name == "listen"
 
@@ -74,7 +72,7 @@ def test_requests_are_served_in_the_order_in_which_they_came(game: DeclaredGame)
     assert (game.queue, game.closed) == (["ben"], "cat")
 
 
-def test_a_timer_is_seen_by_its_bands(game: DeclaredGame) -> None:
+def test_a_timer_is_observed_in_bands(game: DeclaredGame) -> None:
     assert game.seen() == ("listen", ("<20", "no"))
     game.now += 20
     assert game.seen() == ("listen", (">=20", "no"))
@@ -88,7 +86,7 @@ def test_turns_go_round_and_scores_are_each_players_own(game: DeclaredGame) -> N
     assert game.whom("whose turn") == "ben"
 
 
-def test_a_copy_goes_on_by_itself(game: DeclaredGame) -> None:
+def test_a_copy_of_a_game_is_independent(game: DeclaredGame) -> None:
     before = joint_state(game)
     other = game.copy()
     other.observe("asking", "ben", "yes")
@@ -97,7 +95,7 @@ def test_a_copy_goes_on_by_itself(game: DeclaredGame) -> None:
     assert joint_state(game) == before
 
 
-def test_no_situation_of_a_game_is_missing_from_those_of_the_activity(
+def test_the_activity_lists_every_situation_of_its_games(
     trivia: DeclaredActivity, game: DeclaredGame
 ) -> None:
     assert joint_state(game).situation in trivia.situations
@@ -105,7 +103,7 @@ def test_no_situation_of_a_game_is_missing_from_those_of_the_activity(
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_every_text_can_be_prepared_before_there_is_a_game(name: str) -> None:
+def test_every_text_can_be_prerendered_before_a_game(name: str) -> None:
     activity = declared(name)
     for behaviour in activity.behaviours.values():
         for template in (*behaviour.speech.values(), behaviour.image):
@@ -114,7 +112,7 @@ def test_every_text_can_be_prepared_before_there_is_a_game(name: str) -> None:
             assert bool(text) is ("{" not in template.replace("{name}", ""))
 
 
-def test_a_turn_goes_on_when_its_player_leaves_and_skips_who_is_away(game: DeclaredGame) -> None:
+def test_turns_skip_absent_players(game: DeclaredGame) -> None:
     assert game.observe("here", "ann", "no")
     assert (game.whom("whose turn"), game.here) == ("ben", ("ben", "cat"))
     game.execute("tell answer", "ben")
@@ -127,7 +125,7 @@ def test_a_turn_goes_on_when_its_player_leaves_and_skips_who_is_away(game: Decla
     assert game.whom("whose turn") == "ann"
 
 
-def test_only_one_holds_for_exactly_one_of_those_who_are_here(game: DeclaredGame) -> None:
+def test_only_one_counts_only_present_players(game: DeclaredGame) -> None:
     one = FactCondition("only one", "answer", "is", "right")
     held = [game.holds(one, None)]
     for player in ("ann", "ben"):
@@ -137,7 +135,7 @@ def test_only_one_holds_for_exactly_one_of_those_who_are_here(game: DeclaredGame
     assert [*held, game.holds(one, None)] == [False, True, False, True]
 
 
-def test_nobody_who_is_away_asks_answers_or_counts(game: DeclaredGame) -> None:
+def test_absent_players_cannot_ask_answer_or_score(game: DeclaredGame) -> None:
     game.observe("asking", "ben", "yes")
     game.observe("here", "ben", "no")
     assert game.queue == [] and not game.observe("asking", "ben", "yes")
@@ -184,7 +182,7 @@ def test_the_screen_keeps_a_question_until_it_shows_something_else(
     assert shown("close quiz") == game.declaration.title
 
 
-def test_the_screen_keeps_whose_turn_it_was() -> None:
+def test_the_screen_keeps_the_player_of_its_text() -> None:
     raffle = read_declared(Path(__file__).parents[1] / "support/activities/raffle.toml")
     game = DeclaredGame(raffle.declaration, PLAYERS)
     shown = ""
@@ -196,7 +194,7 @@ def test_the_screen_keeps_whose_turn_it_was() -> None:
     assert f"\x02{game.whom('whose turn')}\x03" not in shown, "it is another one's turn now"
 
 
-def test_the_next_item_takes_the_old_one_off_the_screen(tmp_path: Path) -> None:
+def test_the_next_item_clears_the_screen(tmp_path: Path) -> None:
     activity = read_declared(guess_the_sound(tmp_path))
     game = DeclaredGame(activity.declaration, PLAYERS)
     game.execute("play a sound", "ann")
@@ -217,7 +215,7 @@ def test_the_last_player_cannot_leave(game: DeclaredGame) -> None:
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_games_end_whoever_leaves_and_comes_back(name: str) -> None:
+def test_games_end_despite_players_who_leave_and_return(name: str) -> None:
     activity, draw = declared(name), Random(f"{name}/leaving")
     players = activity.teams or PLAYERS
     for seed in range(5):

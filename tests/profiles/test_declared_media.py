@@ -1,4 +1,4 @@
-"""Pictures and sounds of an activity: files beside it, each of which is looked at."""
+"""Pictures and sounds of an activity: files beside it, each of them checked."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_a_column_names_the_picture_and_the_sound_of_each_row(file: Path) -> Non
     assert media(game, "praise the ear") == (None, None)  # a train has no picture
 
 
-def test_a_missing_file_is_told_once_with_its_place_in_both_files(file: Path) -> None:
+def test_a_missing_file_is_reported_once_with_its_place_in_both_files(file: Path) -> None:
     (file.parent / "kettle.wav").unlink()
     (line,) = mistakes(file)
     where = 'sound = "{clip}"'
@@ -53,7 +53,7 @@ def test_a_missing_file_is_told_once_with_its_place_in_both_files(file: Path) ->
     )
 
 
-def test_a_file_of_another_kind_is_told(file: Path) -> None:
+def test_a_file_of_another_kind_is_reported(file: Path) -> None:
     (file.parent / "bell.png").write_bytes(b"<svg/>")
     (file.parent / "dog.wav").write_bytes(b"ID3 is no WAV")
     make_sound(file.parent / "train.wav", LONGEST_SOUND + 1)
@@ -71,13 +71,13 @@ def test_a_file_of_another_kind_is_told(file: Path) -> None:
         ("../bell.png", "../bell.png must be the name of a file beside this one."),
     ],
 )
-def test_a_name_that_cannot_be_one_is_told(file: Path, text: str, told: str) -> None:
+def test_an_invalid_file_name_is_reported(file: Path, text: str, told: str) -> None:
     lines = file.read_text(encoding="utf-8").replace('"{photo}"', f'"{text}"', 1)
     file.write_text(lines, encoding="utf-8")
     assert told in " ".join(mistakes(file))
 
 
-def test_a_file_may_be_the_same_in_every_round(file: Path) -> None:
+def test_a_fixed_file_is_used_in_every_round(file: Path) -> None:
     make_picture(file.parent / "ear.png")
     lines = file.read_text(encoding="utf-8").replace('"{photo}"', '"ear.png"')
     file.write_text(lines, encoding="utf-8")
@@ -85,14 +85,14 @@ def test_a_file_may_be_the_same_in_every_round(file: Path) -> None:
     assert picture is not None and picture.path.endswith("ear.png")
 
 
-def test_a_sound_whose_header_is_damaged_is_no_sound(file: Path) -> None:
+def test_a_sound_with_a_damaged_header_is_refused(file: Path) -> None:
     sound = bytearray((file.parent / "bell.wav").read_bytes())
     sound[18] = 127  # the first chunk reaches beyond the file
     (file.parent / "bell.wav").write_bytes(sound)
     assert "bell.wav is no WAV sound" in " ".join(mistakes(file))
 
 
-def test_a_name_that_no_file_can_have_is_told(file: Path) -> None:
+def test_an_overlong_file_name_is_reported(file: Path) -> None:
     text = file.read_text(encoding="utf-8")
     file.write_text(
         text.replace('sound = "{clip}"', f'sound = "{"a" * 300}.wav"'), encoding="utf-8"

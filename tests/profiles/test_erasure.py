@@ -1,4 +1,4 @@
-"""A name is erased wherever it stands as a name, and nothing else changes."""
+"""Erasing a person's name wherever it is used as a name, and nothing else."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ ROSA = NameEraser(["Rosa"], "user2")
         ("Mr. X", "ask Mr. X. Mr. Xu stays", "ask user2. Mr. Xu stays"),
     ],
 )
-def test_a_name_goes_however_it_is_written_and_only_as_a_whole_word(
+def test_a_name_is_erased_in_any_spelling_as_a_whole_word(
     name: str, text: str, erased: str
 ) -> None:
     assert NameEraser([name], "user2").text(text) == erased
 
 
-def test_an_ordinary_word_stays_in_running_text_and_a_phrase_of_the_activity_everywhere() -> None:
+def test_ordinary_words_and_phrases_of_the_activity_are_kept() -> None:
     mark = NameEraser(["Mark"], "user2", but=["mark numbers", "mark", "Mark Lee"])
     told = mark.text("Tangy went to Mark to mark a card; Mark Lee won.")
     assert told == "Tangy went to user2 to mark a card; Mark Lee won."
@@ -50,7 +50,7 @@ def test_an_ordinary_word_stays_in_running_text_and_a_phrase_of_the_activity_eve
     )
 
 
-def test_a_said_form_takes_no_word_from_running_text() -> None:
+def test_a_spoken_form_is_erased_only_in_commands() -> None:
     mark = NameEraser(["Mark"], "user2", said=["mark"])
     assert mark.text("Mark has to mark a card") == "user2 has to mark a card"
     assert mark.typed("go to mark") == "go to user2"
@@ -61,7 +61,7 @@ def test_a_said_form_takes_no_word_from_running_text() -> None:
     )
 
 
-def test_of_a_body_only_words_change() -> None:
+def test_erasing_a_body_changes_only_texts() -> None:
     body = {"behaviour": "rosa", "teacher": "Rosa", "heard": "go to rosa", "advice": ["ask Rosa"]}
     assert ROSA.body("demonstration step", body) == {
         "behaviour": "rosa",
@@ -80,7 +80,7 @@ def test_of_a_body_only_words_change() -> None:
     assert NameEraser(["Delete"], "user2").body("demonstrations edited", chosen) == chosen
 
 
-def test_in_a_command_for_the_person_a_misspelt_name_goes_as_well() -> None:
+def test_a_misspelt_name_in_a_command_is_erased() -> None:
     eraser = NameEraser(["Rosa Weber"], "user2", commands={"go", "to", "please"})
     for heard in ("Go to rsoa", "go to Frau Wbeer please", "go to roza 2", "go to réosa"):
         body = {"behaviour": "go", "target": "user2", "heard": heard}
@@ -90,20 +90,20 @@ def test_in_a_command_for_the_person_a_misspelt_name_goes_as_well() -> None:
         assert eraser.body("demonstration step", other) == other
 
 
-def test_a_page_changes_where_it_is_read_and_not_in_its_tags_or_styles() -> None:
+def test_erasing_a_page_changes_only_visible_text() -> None:
     page = '<style>.rosa{}</style><p class="rosa" title="Rosa">to rosa</p><rosa>'
     assert ROSA.page(page) == (
         '<style>.rosa{}</style><p class="rosa" title="user2">to user2</p><rosa>'
     )
 
 
-def test_bytes_are_overwritten_so_that_nothing_moves() -> None:
+def test_erasing_bytes_keeps_their_length() -> None:
     data = b"\x00\x12user2Rosa\x05\x00" + json.dumps({"heard": "go to rosa"}).encode() + b"rosary"
     after = ROSA.overwrite(data)
     assert len(after) == len(data) and b"user2----" in after and b"go to ----" in after
     assert after.endswith(b"rosary")
 
 
-def test_bytes_of_a_phrase_of_the_activity_stay() -> None:
+def test_bytes_of_a_phrase_of_the_activity_are_kept() -> None:
     number = NameEraser(["Number"], "user2", but=["call number"])
     assert number.overwrite(b'\x00"call number" number') == b'\x00"call number" ------'

@@ -1,4 +1,4 @@
-"""The kinds of event are a closed set: what writes or reads one that is not in it is named."""
+"""The kinds of event are a closed set; code that uses another kind is named."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def places() -> tuple[set[str], set[str]]:
 
 
 @pytest.mark.parametrize("of", sorted(kinds()))
-def test_a_kind_is_written_by_the_program_and_read_by_it(of: str) -> None:
+def test_every_kind_of_event_is_written_and_read_by_the_program(of: str) -> None:
     record: type[EventRecord] = kinds()[of]
     name = record.__name__
     made, read = places()
@@ -85,13 +85,13 @@ def test_a_kind_is_written_by_the_program_and_read_by_it(of: str) -> None:
     )
 
 
-def test_every_record_stands_in_a_module_that_events_knows() -> None:
+def test_every_record_is_in_a_known_module() -> None:
     known = {f"tangy_profiles.{module}" for module in events.MODULES}
     strange = {r.__name__: r.__module__ for r in kinds().values() if r.__module__ not in known}
     assert strange == {}, "name their modules in MODULES of tangy_profiles.events"
 
 
-def test_no_event_is_read_by_the_keys_of_its_body() -> None:
+def test_no_code_reads_events_by_the_keys_of_their_body() -> None:
     reads = [
         f"{path.relative_to(ROOT)}:{number}"
         for top in CODE
@@ -113,7 +113,7 @@ def test_a_kind_has_one_record() -> None:
         kind("game step")(type("Other", (EventRecord,), {"__annotations__": {}}))
 
 
-def test_what_can_be_done_about_a_fault_is_said_in_words() -> None:
+def test_every_move_about_a_fault_has_words() -> None:
     assert set(get_args(MoveKind)) == set(faults.MOVES)
 
 
@@ -180,7 +180,7 @@ def values(hint: Any) -> st.SearchStrategy[Any]:
 
 
 @pytest.mark.parametrize("name", sorted(kinds()))
-def test_a_record_is_read_as_it_was_written(name: str) -> None:
+def test_a_record_is_read_back_unchanged(name: str) -> None:
     @settings(max_examples=30, deadline=None)
     @given(records_of(kinds()[name]))
     def goes_round(record: EventRecord) -> None:
@@ -200,18 +200,18 @@ MOVED = {("staff action", "what"): "detail"}
 
 
 @pytest.mark.parametrize("row", OLD, ids=[f"{json.loads(row)[0]}-{n}" for n, row in enumerate(OLD)])
-def test_what_was_logged_before_there_were_records_is_read_and_logged_alike(row: str) -> None:
+def test_events_from_before_records_are_read_and_written_alike(row: str) -> None:
     kind, person, strategy, body = json.loads(row)
     now = json.loads(json.dumps(read_record(kind, person, strategy, body).body))
     assert {key: now.get(MOVED.get((kind, key), key), "is gone") for key in body} == body
 
 
-def test_every_kind_that_was_logged_before_is_known() -> None:
+def test_every_old_kind_of_event_is_known() -> None:
     assert {json.loads(row)[0] for row in OLD} <= kinds().keys()
 
 
 @given(states(), st.data())
-def test_a_state_at_a_glance_is_one_looked_at_closely(state: ActivityState, data: Any) -> None:
+def test_quick_decoding_of_a_state_equals_strict_decoding(state: ActivityState, data: Any) -> None:
     table = json.loads(json.dumps(encode(state)))
     assert ActivityState.decode_quickly(table) == state
     spoilt = data.draw(st.sampled_from(sorted(table)))
@@ -232,9 +232,7 @@ ODD: Any = st.recursive(
 
 @tried(200)
 @given(st.sampled_from(sorted(kinds())), st.data())
-def test_a_body_that_is_spoilt_is_read_as_what_it_says_or_refused_in_words(
-    name: str, data: Any
-) -> None:
+def test_a_corrupt_body_is_read_or_refused_in_words(name: str, data: Any) -> None:
     body = json.loads(json.dumps(data.draw(records_of(kinds()[name])).body))
     key = data.draw(st.sampled_from(sorted(body) or ["of"]))
     if data.draw(st.booleans()):
@@ -268,7 +266,7 @@ def renamed() -> Iterator[type[EventRecord]]:
     del records.KINDS["renamed key"]
 
 
-def test_a_body_of_an_earlier_version_is_read_as_one_of_this(renamed: Any) -> None:
+def test_a_body_of_an_earlier_version_is_converted(renamed: Any) -> None:
     new = renamed(after="x")
     assert new.body == {"v": 2, "after": "x"}
     assert read_record("renamed key", None, None, {"before": "x"}) == new
@@ -276,12 +274,12 @@ def test_a_body_of_an_earlier_version_is_read_as_one_of_this(renamed: Any) -> No
 
 
 @pytest.mark.parametrize("version", [3, 0, -1, "2", None, True])
-def test_a_body_of_a_version_that_is_not_known_is_refused(renamed: Any, version: Any) -> None:
+def test_a_body_of_an_unknown_version_is_refused(renamed: Any, version: Any) -> None:
     with pytest.raises(InvalidValue, match="is of version"):
         read_record("renamed key", None, None, {"v": version, "after": "x"})
 
 
-def test_threads_may_make_the_first_record_of_a_kind_together() -> None:
+def test_threads_can_create_the_first_record_of_a_kind_concurrently() -> None:
     def one_more(name: str) -> type[EventRecord]:
         @kind(name)
         class Made(EventRecord):
@@ -310,7 +308,7 @@ def test_a_record_can_be_copied() -> None:
     assert [copy.deepcopy(one) for one in (record, unknown)] == [record, unknown]
 
 
-def test_a_kind_that_is_not_known_is_never_taken_for_another() -> None:
+def test_an_unknown_kind_is_never_read_as_another() -> None:
     assert isinstance(read_record("drlll", None, None, {"seed": 1}), Unknown)
 
 
@@ -335,14 +333,14 @@ WHY = [
 
 
 @pytest.mark.parametrize(("name", "body", "words"), WHY)
-def test_a_body_that_is_refused_says_where_and_why(name: str, body: Any, words: str) -> None:
+def test_a_refused_body_names_the_place_and_the_reason(name: str, body: Any, words: str) -> None:
     with pytest.raises(InvalidValue) as refused:
         read_record(name, "p", "s", body)
     assert words in str(refused.value)
 
 
 @pytest.mark.parametrize("measured", [0, -2.5, 1.7e18, 10**30, True, "STALE"])
-def test_whatever_a_device_measures_can_be_kept_with_its_fault(measured: float | str) -> None:
+def test_any_measurement_can_be_stored_with_its_fault(measured: float | str) -> None:
     words = ("game", "fault", "code", "name", "recovery", "behaviour", "console", "why")
     fault = {**dict.fromkeys(words, "x"), "criticality": "critical", "step": 3, "seconds": 4.5}
     lists = {"mismatches": [], "advice": ["look"], "evidence": {"laser.stamp": measured}}
@@ -351,7 +349,7 @@ def test_whatever_a_device_measures_can_be_kept_with_its_fault(measured: float |
     }
 
 
-def test_an_earlier_log_still_tells_which_faults_came_on_purpose() -> None:
+def test_an_earlier_log_still_marks_injected_faults() -> None:
     told = {
         "a fault was brought about: camera covered": ("fault injected", "camera covered"),
         "a fault was lifted: camera covered": ("fault lifted", "camera covered"),

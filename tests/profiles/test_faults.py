@@ -1,4 +1,4 @@
-"""The fault rules that ship hold together, and every mistake in such a file is one line."""
+"""The shipped fault rules are consistent, and every mistake in a rule file is one line."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def refusal(folder: Path, robot: Robot, text: str) -> str:
     return sentence
 
 
-def test_what_ships_loads_and_its_last_rule_explains_all_the_rest(robot: Robot) -> None:
+def test_the_shipped_rules_load_and_end_with_a_fallback(robot: Robot) -> None:
     book = load_faults(robot)
     assert book.rules[-1] is book.fallback
     assert book.fallback.fallback
@@ -70,7 +70,7 @@ def test_what_ships_loads_and_its_last_rule_explains_all_the_rest(robot: Robot) 
         assert rule.critical == (rule.recovery[0] == "expert"), rule.code
 
 
-def test_a_rule_is_found_by_its_code_and_a_wrong_code_tells_the_nearest(robot: Robot) -> None:
+def test_a_rule_is_found_by_its_code_or_the_nearest_suggested(robot: Robot) -> None:
     book = load_faults(robot)
     assert book.rule("path-blocked").code == "path-blocked"
     with pytest.raises(ProfileError, match="did you mean 'path-blocked'"):
@@ -107,7 +107,7 @@ def test_a_rule_is_found_by_its_code_and_a_wrong_code_tells_the_nearest(robot: R
         ('name = "Laser silent"', "", "is missing; it must be text in quotes"),
     ],
 )  # fmt: skip
-def test_every_mistake_is_one_line_with_the_nearest_word(
+def test_every_mistake_is_reported_in_one_line_with_a_suggestion(
     tmp_path: Path, robot: Robot, right: str, wrong: str, told: str
 ) -> None:
     assert right in RULE
@@ -137,15 +137,13 @@ def test_a_condition_that_a_device_can_never_meet_is_refused(
 
 @pytest.mark.parametrize("text", ["Ask {nome}.", "Brace {", "{name.__class__}"])
 @pytest.mark.parametrize("key", ["name", "advice"])
-def test_every_text_is_filled_in_only_with_what_there_is(
-    tmp_path: Path, robot: Robot, key: str, text: str
-) -> None:
+def test_texts_may_use_only_known_slots(tmp_path: Path, robot: Robot, key: str, text: str) -> None:
     right = {"name": '"Laser silent"', "advice": '"Call the expert."'}[key]
     assert right in RULE
     assert key in refusal(tmp_path, robot, RULE.replace(right, f'"{text}"', 1) + LAST)
 
 
-def test_who_asks_a_user_says_and_shows_what_for(tmp_path: Path, robot: Robot) -> None:
+def test_a_rule_that_asks_users_needs_speech_and_image(tmp_path: Path, robot: Robot) -> None:
     text = RULE.replace('"critical"', '"non-critical"').replace('["expert"]', '["user", "expert"]')
     assert "what a user is asked to do" in refusal(tmp_path, robot, text + LAST)
     said = text + 'aloud = "Please uncover me."\nimage = "Please uncover me"\n'
@@ -163,15 +161,11 @@ def test_who_asks_a_user_says_and_shows_what_for(tmp_path: Path, robot: Robot) -
         ("faults = 3", "must be a list of tables"),
     ],
 )
-def test_a_rule_that_can_never_be_reached_is_refused(
-    tmp_path: Path, robot: Robot, text: str, told: str
-) -> None:
+def test_an_unreachable_rule_is_refused(tmp_path: Path, robot: Robot, text: str, told: str) -> None:
     assert told in refusal(tmp_path, robot, text)
 
 
-def test_a_weaker_condition_after_a_stronger_one_can_be_reached(
-    tmp_path: Path, robot: Robot
-) -> None:
+def test_a_weaker_condition_after_a_stronger_one_is_reachable(tmp_path: Path, robot: Robot) -> None:
     strong = RULE.replace(
         '"laser.state" = { is = "STALE" }', '"laser.near_share" = { above = 0.9 }'
     )
@@ -180,7 +174,9 @@ def test_a_weaker_condition_after_a_stronger_one_can_be_reached(
     assert "'weaker' matches first" in refusal(tmp_path, robot, weak + strong + LAST)
 
 
-def test_all_mistakes_of_a_file_are_told_one_for_each_entry(tmp_path: Path, robot: Robot) -> None:
+def test_all_mistakes_of_a_file_are_reported_one_for_each_entry(
+    tmp_path: Path, robot: Robot
+) -> None:
     path = tmp_path / "mine.toml"
     bad = RULE.replace('"critical"', '"crital"'), RULE.replace("laser.state", "laser.stat")
     path.write_text("".join(bad) + RULE + LAST + "colour = 1\n", encoding="utf-8")
@@ -202,7 +198,7 @@ NUMBERS = st.floats(-10, 10)
     st.sampled_from(["above", "below", "at_least", "is"]), NUMBERS,
     st.sampled_from(["above", "below", "at_least", "is"]), NUMBERS, NUMBERS,
 )  # fmt: skip
-def test_a_condition_implies_another_only_if_that_holds_wherever_it_does(
+def test_implication_of_conditions_is_sound(
     test: str, value: float, other_test: str, other_value: float, found: float
 ) -> None:
     one, other = Condition("x", test, value), Condition("x", other_test, other_value)
@@ -219,7 +215,7 @@ WORDS = st.sampled_from(
 
 @pytest.mark.slow
 @given(st.integers(0, len(SHIPPED)), st.integers(0, 60), WORDS | st.text(max_size=12))
-def test_no_damage_to_the_file_gives_a_traceback(
+def test_a_damaged_file_causes_no_traceback(
     tmp_path_factory: pytest.TempPathFactory, place: int, length: int, put: str
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "damaged.toml"

@@ -1,4 +1,4 @@
-"""What an activity lets staff choose for a game, read from its file."""
+"""The options of a game that an activity offers to staff, read from its file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def on(name: str) -> Deck:
         ("full card", 2**25 - 1, 2**25 - 2),
     ],
 )
-def test_a_card_wins_by_a_pattern_when_its_cells_are_full(name: str, wins: int, loses: int) -> None:
+def test_a_card_wins_by_a_full_pattern(name: str, wins: int, loses: int) -> None:
     assert on(name).wins(wins) and not on(name).wins(loses)
 
 
@@ -40,24 +40,24 @@ def test_one_line_is_not_two() -> None:
     assert not on("two lines").wins(ROW)
 
 
-def test_where_nothing_is_chosen_the_deck_is_as_the_activity_has_it() -> None:
+def test_no_chosen_pattern_keeps_the_deck_of_the_activity() -> None:
     patterns = Patterns.of(BINGO.rules, BINGO.deck, ())
     assert patterns.played == BINGO.deck and not patterns.advance()
 
 
-def test_patterns_follow_one_another() -> None:
+def test_chosen_patterns_are_played_in_turn() -> None:
     patterns = Patterns.of(BINGO.rules, BINGO.deck, ("line", "x"))
     assert patterns.played.lines == BINGO.deck.lines
     assert patterns.advance() and patterns.played == on("x") and not patterns.advance()
 
 
-def test_a_pattern_is_found_by_name_and_by_label_and_another_is_refused() -> None:
+def test_a_pattern_is_found_by_name_or_label() -> None:
     assert BINGO.rules.pattern("The Frame") is BINGO.rules.pattern("frame")
     with pytest.raises(TangyError, match="frame"):
         BINGO.rules.pattern("frames")
 
 
-def test_a_strength_leaves_out_the_strategies_it_does_not_name() -> None:
+def test_a_strength_excludes_strategies_that_it_does_not_name() -> None:
     assert BINGO.rules.left_out("gentle") == ("scarcity",)
     assert BINGO.rules.left_out("") == () == BINGO.rules.left_out("full")
 
@@ -72,7 +72,7 @@ def test_a_strength_leaves_out_the_strategies_it_does_not_name() -> None:
         ('strategies = ["neutral"]', "strategies = []", "strategies"),
     ],
 )
-def test_a_mistake_is_named_by_its_key(tmp_path: Path, old: str, new: str, key: str) -> None:
+def test_a_mistake_is_reported_with_its_key(tmp_path: Path, old: str, new: str, key: str) -> None:
     shipped = Path(load_activity.__globals__["shipped_activities"]()["bingo"])
     file = tmp_path / "mine.toml"
     file.write_text(shipped.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
@@ -80,7 +80,7 @@ def test_a_mistake_is_named_by_its_key(tmp_path: Path, old: str, new: str, key: 
         read_activity(file)
 
 
-def test_faster_and_slower_go_to_the_next_pace_from_any() -> None:
+def test_faster_and_slower_choose_the_next_pace() -> None:
     assert [next_pace(12, by) for by in (-1, 1)] == [10, 15]
     assert [next_pace(20, by) for by in (-1, 1)] == [15, 25]
     assert (next_pace(PACES[0], -1), next_pace(PACES[-1], 1)) == (PACES[0], PACES[-1])

@@ -1,4 +1,4 @@
-"""A file that is named is a regular one of a size that can be, or is refused in one sentence."""
+"""Reading given files: regular files of a bounded size; others are refused in one sentence."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def pipe(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_file_and_a_link_to_one_are_read(tmp_path: Path) -> None:
+def test_files_and_links_to_files_are_read(tmp_path: Path) -> None:
     (tmp_path / "one").write_bytes(b"a\r\nb\rc\n")
     (tmp_path / "link").symlink_to(tmp_path / "one")
     assert read_given(tmp_path / "link", 7) == b"a\r\nb\rc\n"
@@ -29,7 +29,7 @@ def test_a_file_and_a_link_to_one_are_read(tmp_path: Path) -> None:
         assert os.get_inheritable(file.fileno()) is False
 
 
-def test_what_never_ends_is_not_opened(tmp_path: Path, pipe: Path) -> None:
+def test_endless_files_are_not_opened(tmp_path: Path, pipe: Path) -> None:
     (tmp_path / "zero").symlink_to("/dev/zero")
     bound = socket.socket(socket.AF_UNIX)
     bound.bind(str(tmp_path / "socket"))
@@ -49,7 +49,7 @@ def test_what_never_ends_is_not_opened(tmp_path: Path, pipe: Path) -> None:
         ("large", "is larger than 10 bytes"), ("loop", "cannot be read"), ("/proc/self/status", ""),
     ],
 )  # fmt: skip
-def test_what_cannot_be_read_is_said(tmp_path: Path, name: str, told: str) -> None:
+def test_unreadable_files_are_reported(tmp_path: Path, name: str, told: str) -> None:
     (tmp_path / "large").write_bytes(bytes(11))
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
     with pytest.raises(TangyError, match=told or "is larger than 10 bytes") as caught:

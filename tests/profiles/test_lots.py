@@ -1,4 +1,4 @@
-"""Turns by lot: each game draws the order of its players anew, and everybody has a turn."""
+"""Turns by lot: each game draws a new order of players, and everybody has a turn."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def world(raffle: DeclaredActivity, seed: int) -> DeclaredWorld:
     return DeclaredWorld(raffle, PLAYERS, seed=seed)
 
 
-def test_every_order_is_drawn_about_as_often(raffle: DeclaredActivity) -> None:
+def test_turn_orders_are_drawn_uniformly(raffle: DeclaredActivity) -> None:
     draw = Random(5).random
     drawn = Counter(turns_of(raffle.declaration, PLAYERS, draw) for _ in range(6_000))
     assert len(drawn) == 6
     assert all(900 < count < 1_100 for count in drawn.values())
 
 
-def test_without_lots_turns_go_by_the_seats_and_nothing_is_drawn(raffle: DeclaredActivity) -> None:
+def test_turns_without_lots_follow_the_seats(raffle: DeclaredActivity) -> None:
     def never() -> float:
         raise AssertionError
 
@@ -47,7 +47,7 @@ def test_without_lots_turns_go_by_the_seats_and_nothing_is_drawn(raffle: Declare
     assert turns_of(in_order, PLAYERS, never) == PLAYERS
 
 
-def test_a_seed_draws_the_same_order_again_and_each_game_another(raffle: DeclaredActivity) -> None:
+def test_the_order_depends_on_seed_and_game(raffle: DeclaredActivity) -> None:
     room = world(raffle, 3)
     orders = [room.game.players]
     for _ in range(20):
@@ -60,7 +60,7 @@ def test_a_seed_draws_the_same_order_again_and_each_game_another(raffle: Declare
     assert again.game.players == orders[1]
 
 
-def test_the_order_is_kept_in_the_log(raffle: DeclaredActivity) -> None:
+def test_the_order_is_stored_in_the_log(raffle: DeclaredActivity) -> None:
     games = [world(raffle, seed).game for seed in range(8)]
     assert len({game.players for game in games}) > 2
     for game in games:
@@ -72,7 +72,7 @@ def test_the_order_is_kept_in_the_log(raffle: DeclaredActivity) -> None:
         assert restored.whom("whose turn") == game.whom("whose turn")
 
 
-def test_people_on_the_bench_learn_from_the_robot_whose_turn_it_is(
+def test_people_on_the_bench_learn_the_turn_from_the_robot(
     raffle: DeclaredActivity,
 ) -> None:
     seats = load_people(3)

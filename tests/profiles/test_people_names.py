@@ -11,15 +11,15 @@ from tangy_profiles.person import folded
 
 
 @given(st.text(max_size=20))
-def test_a_name_is_the_same_however_its_accents_are_written(name: str) -> None:
+def test_names_are_equal_in_any_unicode_normal_form(name: str) -> None:
     assert folded(unicodedata.normalize("NFD", name)) == folded(unicodedata.normalize("NFC", name))
 
 
 @given(st.text(max_size=20))
-def test_what_is_folded_stays_as_it_is(name: str) -> None:
+def test_folding_is_idempotent(name: str) -> None:
     assert folded(folded(name)) == folded(name)
 
 
-def test_letters_and_spaces_round_a_name_do_not_matter_and_accents_do() -> None:
+def test_case_and_outer_spaces_are_ignored_but_accents_count() -> None:
     assert folded(" ZOÉ") == folded("Zoe\N{COMBINING ACUTE ACCENT}") == "zoé"
     assert folded("Zoe") != folded("Zoé")

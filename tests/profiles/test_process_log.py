@@ -1,4 +1,4 @@
-"""What processes write down: a line a decision, with the id of the command that it serves."""
+"""The logs of processes: one line for each decision, with the id of its command."""
 
 from __future__ import annotations
 
@@ -51,19 +51,19 @@ def test_a_line_has_its_time_process_module_and_command(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("told", ["abc123", "0" * 32])
-def test_an_id_that_another_process_tells_is_taken_over(told: str) -> None:
+def test_an_id_from_another_process_is_used(told: str) -> None:
     with serving(told) as command:
         assert command == told
     assert command_id() == NO_COMMAND
 
 
 @pytest.mark.parametrize("told", ["", "x" * 33, "a b", "a\nb", 7, ["a"], "\x1b[2J"])
-def test_what_can_be_no_id_is_none(told: object) -> None:
+def test_an_invalid_id_is_ignored(told: object) -> None:
     with serving(told) as command:
         assert command == NO_COMMAND
 
 
-def test_each_command_has_an_id_of_its_own() -> None:
+def test_each_command_has_its_own_id() -> None:
     with serving() as first:
         pass
     with serving() as second:
@@ -71,13 +71,13 @@ def test_each_command_has_an_id_of_its_own() -> None:
     assert first != second
 
 
-def test_what_goes_on_beside_it_keeps_its_own_id() -> None:
+def test_a_concurrent_task_keeps_its_own_id() -> None:
     with serving() as command:
         beside = contextvars.copy_context()
     assert beside.run(command_id) == command and command_id() == NO_COMMAND
 
 
-def test_it_is_for_its_owner_alone_and_cut_when_it_is_long(tmp_path: Path) -> None:
+def test_the_log_is_private_and_bounded(tmp_path: Path) -> None:
     with logging_to(tmp_path):
         LOG.info("x" * MOST)
         LOG.info("one more")
@@ -86,14 +86,14 @@ def test_it_is_for_its_owner_alone_and_cut_when_it_is_long(tmp_path: Path) -> No
     assert path.stat().st_size <= KEPT + 200 and lines(tmp_path)[-1].endswith("one more")
 
 
-def test_nothing_is_written_before_there_is_something_to_say(tmp_path: Path) -> None:
+def test_no_log_file_is_created_without_a_message(tmp_path: Path) -> None:
     with logging_to(tmp_path):
         logging.getLogger("others").warning("not ours")
     assert not (tmp_path / PROGRAM_LOG).exists()
 
 
 @pytest.mark.parametrize(("level", "count"), [("", 1), ("debug", 2), ("ERROR", 0), ("loud", 1)])
-def test_the_environment_says_how_much_is_written(
+def test_the_environment_sets_the_log_level(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str, count: int
 ) -> None:
     monkeypatch.setenv(LEVEL, level)
@@ -104,18 +104,18 @@ def test_the_environment_says_how_much_is_written(
     assert (tmp_path / PROGRAM_LOG).exists() is bool(count)
 
 
-def test_a_log_that_cannot_be_written_stops_nothing(tmp_path: Path) -> None:
+def test_an_unwritable_log_causes_no_error(tmp_path: Path) -> None:
     (tmp_path / PROGRAM_LOG).mkdir()
     with logging_to(tmp_path):
         LOG.error("nowhere to go")
 
 
-def test_every_file_says_whose_it_is() -> None:
+def test_every_log_file_has_a_description() -> None:
     assert PROGRAM_LOG in LOGS and all(LOGS.values())
 
 
 @pytest.mark.parametrize("package", ["tangy_tui", "tangy_hw", "tangy_sim", "tangy_profiles"])
-def test_where_no_log_was_opened_a_warning_stays_out_of_the_terminal(package: str) -> None:
+def test_warnings_without_a_log_do_not_reach_the_terminal(package: str) -> None:
     warns = f"import {package}, logging; logging.getLogger('{package}.room').warning('broken')"
     done = subprocess.run([sys.executable, "-c", warns], capture_output=True, check=True)  # noqa: S603
     assert done.stderr == b""

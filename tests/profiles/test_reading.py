@@ -1,4 +1,4 @@
-"""TOML is read key by key, and whatever stands in it, the reader gets a value or one sentence."""
+"""Reading TOML key by key: each key gives a value, or one sentence about the mistake."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_any_value_under_any_key_is_taken_or_refused_in_one_printable_line(
 
 
 @given(st.text())
-def test_text_is_given_back_as_it_stands_if_it_can_be_shown(value: str) -> None:
+def test_printable_text_is_returned_unchanged(value: str) -> None:
     table = Table({"key": value}, "mine.toml")
     if value.strip() and plain(value) == value:
         assert table.text("key") == value
@@ -70,7 +70,7 @@ def test_a_number_is_finite_and_within_its_range(value: float, low: float, high:
             table.number("key", low, high)
 
 
-def test_absent_keys_take_their_default_or_are_said_to_be_missing() -> None:
+def test_absent_keys_take_their_default_or_are_reported() -> None:
     table = Table({}, "mine.toml")
     assert table.text("a", "") == ""
     assert table.flag("a", False) is False
@@ -85,7 +85,7 @@ def test_absent_keys_take_their_default_or_are_said_to_be_missing() -> None:
             READERS[reader](table, "a")
 
 
-def test_a_key_that_nobody_took_is_refused_with_the_nearest_one() -> None:
+def test_an_unknown_key_is_refused_with_a_suggestion() -> None:
     table = Table({"name": "x", "tilte": "y"}, "mine.toml")
     table.text("name")
     table.text("title", "")
@@ -111,7 +111,7 @@ def test_a_text_without_its_quotation_marks_is_named(tmp_path: Path, line: str, 
     assert told in str(raised.value)
 
 
-def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
+def test_the_nearest_word_or_all_words_are_suggested() -> None:
     assert nearest("jok", ["joke", "greeting"]) == "did you mean 'joke'?"
     assert nearest("zzz", ["joke", "greeting"]) == "choose one of: greeting, joke."
     assert nearest("tiems", ["items", "teams", "title"]) == "did you mean 'items'?"
@@ -119,7 +119,7 @@ def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
     assert nearest("zzz", []) == "there is none to choose from."
 
 
-def test_of_words_as_near_those_not_there_yet_are_named_or_else_all() -> None:
+def test_equally_near_words_are_suggested_unless_already_used() -> None:
     assert nearest("tems", ["items", "teams"]) == "did you mean 'items' or 'teams'?"
     assert nearest("tems", ["items", "teams"], ["teams"]) == "did you mean 'items'?"
     assert nearest("tems", ["items", "teams"], ["items"]) == "did you mean 'teams'?"
@@ -128,7 +128,7 @@ def test_of_words_as_near_those_not_there_yet_are_named_or_else_all() -> None:
 
 
 @given(st.text(st.characters(exclude_categories=())))
-def test_plain_text_has_nothing_that_acts_on_a_terminal(text: str) -> None:
+def test_plain_text_has_no_control_characters(text: str) -> None:
     shown = plain(text)
     assert len(shown) == len(text)
     assert plain(shown) == shown
@@ -160,5 +160,5 @@ def test_the_name_of_a_broken_file_cannot_act_on_the_terminal(tmp_path: Path) ->
         assert str(caught.value).isprintable()
 
 
-def test_profile_errors_are_shown_like_all_errors_that_a_person_can_mend() -> None:
+def test_profile_errors_are_user_errors() -> None:
     assert issubclass(ProfileError, TangyError)

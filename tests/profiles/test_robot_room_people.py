@@ -1,4 +1,4 @@
-"""The body, the room and the people: what ships is sound, and mistakes are one line."""
+"""The robot, the room and the people: shipped files are valid, and mistakes are one line."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_the_body_knows_every_posture_of_the_activities(
     load_robot().check(lanterns)
 
 
-def test_a_posture_that_the_body_has_not_is_refused_with_the_nearest(activity: Activity) -> None:
+def test_an_unknown_posture_is_refused_with_a_suggestion(activity: Activity) -> None:
     joke = replace(activity.behaviours["joke"], posture="jesst")
     clumsy = replace(activity, behaviours={**activity.behaviours, "joke": joke})
     with pytest.raises(ProfileError) as caught:
@@ -87,7 +87,7 @@ def test_a_mistake_in_a_body_is_one_line(
         assert words in str(caught.value)
 
 
-def test_every_robot_has_a_link_that_tells_when_its_program_stood_still(tmp_path: Path) -> None:
+def test_every_robot_has_a_link_with_a_fact_for_freezes(tmp_path: Path) -> None:
     told = """[[devices]]
 name = "link"
 label = "link to the robot"
@@ -99,7 +99,7 @@ stale_after = 0.25
     assert load_faults(without).rule("control-frozen").critical
 
 
-def test_an_unknown_robot_or_room_is_refused_with_the_nearest() -> None:
+def test_an_unknown_robot_or_room_is_refused_with_a_suggestion() -> None:
     with pytest.raises(ProfileError, match="did you mean 'tangy'"):
         load_robot("tangi")
     with pytest.raises(ProfileError, match="did you mean 'common-room'"):

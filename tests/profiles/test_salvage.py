@@ -1,4 +1,4 @@
-"""Of a damaged log every event is kept that can be read."""
+"""Salvaging a damaged log: every readable event is kept."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def overwrite(folder: Path, page: int, content: bytes) -> None:
 
 
 @pytest.mark.parametrize("content", [bytes(PAGE), b"\xa5" * PAGE, Random(1).randbytes(PAGE)])
-def test_a_page_that_is_overwritten_costs_the_events_on_it(folder: Path, content: bytes) -> None:
+def test_an_overwritten_page_loses_only_its_events(folder: Path, content: bytes) -> None:
     pages = (folder / "tangy.db").stat().st_size // PAGE
     whole = {event.seq: event for event in _events(folder)}
     overwrite(folder, pages // 2, content)
@@ -52,7 +52,7 @@ def test_a_page_that_is_overwritten_costs_the_events_on_it(folder: Path, content
 
 
 @pytest.mark.slow
-def test_whatever_page_is_overwritten_nothing_is_invented(folder: Path, tmp_path: Path) -> None:
+def test_an_overwritten_page_adds_no_event(folder: Path, tmp_path: Path) -> None:
     whole = {event.seq: event for event in _events(folder)}
     bytes_of_it = (folder / "tangy.db").read_bytes()
     kept = []
@@ -68,7 +68,7 @@ def test_whatever_page_is_overwritten_nothing_is_invented(folder: Path, tmp_path
 
 
 @pytest.mark.parametrize("page", [0, 2])
-def test_a_log_of_which_nothing_can_be_read_is_told_until_accepted(folder: Path, page: int) -> None:
+def test_an_unreadable_log_is_reported_until_accepted(folder: Path, page: int) -> None:
     overwrite(folder, 0, Random(page).randbytes(PAGE))
     if page:
         (folder / "tangy.seal").unlink()  # then nobody can tell how many they were
@@ -84,9 +84,7 @@ def test_a_log_of_which_nothing_can_be_read_is_told_until_accepted(folder: Path,
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_half_a_page_that_is_overwritten_costs_no_event_of_another_page(
-    folder: Path, seed: int
-) -> None:
+def test_a_half_overwritten_page_loses_no_event_of_another(folder: Path, seed: int) -> None:
     whole = {event.seq: event for event in _events(folder)}
     path = folder / "tangy.db"
     pages = path.stat().st_size // PAGE
@@ -102,7 +100,7 @@ def test_half_a_page_that_is_overwritten_costs_no_event_of_another_page(
         assert not gone or gone[-1] - gone[0] <= 40
 
 
-def test_a_new_log_has_the_identity_of_the_damaged_one(folder: Path) -> None:
+def test_a_salvaged_log_keeps_the_identity_of_the_robot(folder: Path) -> None:
     (before, *_) = _events(folder)
     pages = (folder / "tangy.db").stat().st_size // PAGE
     overwrite(folder, pages // 2, bytes(PAGE))

@@ -1,4 +1,4 @@
-"""The count beside the log: newest events that are gone are said, and nothing else is."""
+"""The count beside the log: only missing newest events are reported."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOON = datetime(2026, 3, 4, 12, tzinfo=UTC)
 
 
 class Mishap(Exception):
-    """Something went wrong inside a transaction."""
+    """An error inside a transaction."""
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def said(folder: Path) -> list[str]:
         return console.notices
 
 
-def test_a_program_that_was_killed_leaves_nothing_to_say(store: Store, tmp_path: Path) -> None:
+def test_a_killed_program_loses_no_event(store: Store, tmp_path: Path) -> None:
     for number in range(1, 8):
         append_body(store, "joke", {"n": number})
         folder = killed(store, tmp_path / f"after-{number}")
@@ -56,7 +56,7 @@ def test_a_program_that_was_killed_leaves_nothing_to_say(store: Store, tmp_path:
 
 
 @pytest.mark.slow
-def test_a_lost_tail_is_said_whatever_became_of_it(store: Store, tmp_path: Path) -> None:
+def test_every_lost_tail_is_reported(store: Store, tmp_path: Path) -> None:
     """Damage that leaves all events says nothing; each that takes some says which."""
     for number in range(40):
         append_body(store, "joke", {"n": number, "text": "x" * 300})
@@ -84,9 +84,7 @@ def test_a_lost_tail_is_said_whatever_became_of_it(store: Store, tmp_path: Path)
     assert lost > 40, "most of the damage takes something"
 
 
-def test_a_tail_that_was_deleted_is_noted_and_said_until_staff_accept_it(
-    store: Store, tmp_path: Path
-) -> None:
+def test_a_deleted_tail_is_reported_until_staff_accept_it(store: Store, tmp_path: Path) -> None:
     Store.open(tmp_path / "first").close()
     append_body(store, "joke", {})
     store.file.reading()
@@ -111,7 +109,7 @@ def test_a_tail_that_was_deleted_is_noted_and_said_until_staff_accept_it(
         assert (again.notices, again.check()) == ([], [])
 
 
-def test_a_copy_made_while_tangy_writes_says_what_it_lacks(store: Store, tmp_path: Path) -> None:
+def test_a_copy_of_a_busy_folder_reports_missing_events(store: Store, tmp_path: Path) -> None:
     append_body(store, "joke", {})
     folder = killed(store, tmp_path / "copy")
     append_body(store, "joke", {})
@@ -120,7 +118,7 @@ def test_a_copy_made_while_tangy_writes_says_what_it_lacks(store: Store, tmp_pat
     assert "a copy that was made while Tangy was writing" in said(folder)[0]
 
 
-def test_a_copy_of_a_closed_folder_has_all(store: Store, tmp_path: Path) -> None:
+def test_a_copy_of_a_closed_folder_is_complete(store: Store, tmp_path: Path) -> None:
     append_body(store, "joke", {})
     store.close()
     shutil.copytree(store.folder, tmp_path / "copy")
@@ -128,7 +126,7 @@ def test_a_copy_of_a_closed_folder_has_all(store: Store, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("kept", ["", "none", "torn", "bits", "folder"])
-def test_a_count_that_is_gone_is_said_until_staff_accept_it(store: Store, kept: str) -> None:
+def test_a_missing_count_is_reported_until_staff_accept_it(store: Store, kept: str) -> None:
     seal = store.folder / "tangy.seal"
     append_body(store, "joke", {})
     append_body(store, "joke", {})
@@ -152,7 +150,7 @@ def test_a_count_that_is_gone_is_said_until_staff_accept_it(store: Store, kept: 
         assert said(store.folder) == []
 
 
-def test_a_count_that_lags_gives_no_alarm(store: Store) -> None:
+def test_a_lagging_count_raises_no_alarm(store: Store) -> None:
     seal = store.folder / "tangy.seal"
     append_body(store, "joke", {})
     early = seal.read_bytes()
@@ -165,7 +163,7 @@ def test_a_count_that_lags_gives_no_alarm(store: Store) -> None:
     assert said(store.folder) == []
 
 
-def test_a_log_that_never_had_a_count_is_believed(store: Store) -> None:
+def test_a_log_without_a_count_is_accepted(store: Store) -> None:
     append_body(store, "joke", {})
     assert store.file.db is not None
     store.file.db.execute("DELETE FROM meta WHERE key = 'sealed'")
@@ -176,7 +174,7 @@ def test_a_log_that_never_had_a_count_is_believed(store: Store) -> None:
         assert again.notices == []
 
 
-def test_the_count_of_another_log_is_not_taken_for_this_one(store: Store, tmp_path: Path) -> None:
+def test_the_count_of_another_log_is_ignored(store: Store, tmp_path: Path) -> None:
     for _ in range(5):
         append_body(store, "joke", {})
     other = tmp_path / "other"
@@ -185,7 +183,7 @@ def test_the_count_of_another_log_is_not_taken_for_this_one(store: Store, tmp_pa
     assert said(other) == []
 
 
-def test_a_damaged_log_that_is_set_aside_is_said_once(store: Store) -> None:
+def test_setting_a_damaged_log_aside_is_reported_once(store: Store) -> None:
     for number in range(50):
         append_body(store, "joke", {"n": number, "text": "x" * 500})
     store.close()
@@ -198,7 +196,7 @@ def test_a_damaged_log_that_is_set_aside_is_said_once(store: Store) -> None:
     assert said(store.folder) == lost
 
 
-def test_what_was_taken_back_is_not_counted(store: Store, tmp_path: Path) -> None:
+def test_rolled_back_events_are_not_counted(store: Store, tmp_path: Path) -> None:
     append_body(store, "joke", {})
     with suppress(Mishap), store.transaction():
         append_body(store, "joke", {})
@@ -206,7 +204,7 @@ def test_what_was_taken_back_is_not_counted(store: Store, tmp_path: Path) -> Non
     assert said(killed(store, tmp_path / "killed")) == []
 
 
-def test_a_console_beside_a_busy_writer_is_never_alarmed(store: Store) -> None:
+def test_a_console_beside_a_busy_writer_raises_no_alarm(store: Store) -> None:
     done = threading.Event()
 
     def write() -> None:
@@ -224,14 +222,14 @@ def test_a_console_beside_a_busy_writer_is_never_alarmed(store: Store) -> None:
         writer.join()
 
 
-def test_a_clock_that_goes_back_changes_nothing(tmp_path: Path) -> None:
+def test_a_clock_that_jumps_raises_no_alarm(tmp_path: Path) -> None:
     for days in (0, -400, 400):
         with Store.open(tmp_path, now=lambda days=days: NOON + timedelta(days)) as store:  # type: ignore[misc]
             append_body(store, "joke", {})
             assert store.notices == []
 
 
-def test_the_count_never_leads(tmp_path: Path) -> None:
+def test_the_count_never_exceeds_the_log(tmp_path: Path) -> None:
     """It is written after the commit, so that a program killed in between leaves it behind."""
     with Store.open(tmp_path) as store:
         seal = Seal(tmp_path)

@@ -1,4 +1,4 @@
-"""Situations of declared activities in words for people, with and without words of the file."""
+"""Situations of declared activities in words, with and without words in the file."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def bare(tmp_path: Path) -> DeclaredActivity:
     return read_declared(file)
 
 
-def test_a_stage_says_in_words_of_its_file_what_is_going_on() -> None:
+def test_a_stage_is_described_in_the_words_of_its_file() -> None:
     trivia = declared("trivia")
     wrong = situation_of(trivia.declaration, "judge", ("wrong", "yes"))
     assert trivia.told_of(wrong, "Rosa") == "Rosa gave an answer · it is wrong, after a hint"
@@ -48,7 +48,7 @@ def test_a_stage_says_in_words_of_its_file_what_is_going_on() -> None:
     assert trivia.in_names(wrong) == "judge · answer is wrong, hinted is yes"
 
 
-def test_without_words_names_and_conditions_are_read(bare: DeclaredActivity) -> None:
+def test_names_and_conditions_describe_a_stage_without_words(bare: DeclaredActivity) -> None:
     first = situation_of(bare.declaration, "warm_up", ("5-19", "sad", ">=2"))
     told = "warm up (opened is no) · for 5 to 19 s, mood is sad, tries: 2 or more"
     assert bare.in_words(first) == told
@@ -64,7 +64,7 @@ def test_check_names_the_stages_without_words(bare: DeclaredActivity) -> None:
     assert without_words(declared("trivia")) == []
 
 
-def test_every_stage_that_ships_has_words_and_no_two_situations_read_alike() -> None:
+def test_every_shipped_situation_has_unique_words() -> None:
     assert DECLARED
     for activity in map(declared, DECLARED):
         assert without_words(activity) == [], activity.name

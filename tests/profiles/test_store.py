@@ -1,4 +1,4 @@
-"""What the log promises: what was acknowledged stands, in order, once, and nobody else writes."""
+"""The guarantees of the log: acknowledged events stay, in order and once; only one writer."""
 
 import json
 import os
@@ -31,7 +31,7 @@ NOON = datetime(2026, 3, 4, 12, 0, 0, 250, tzinfo=UTC)
 
 
 class Mishap(Exception):
-    """Something went wrong inside a transaction."""
+    """An error inside a transaction."""
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ def fails(deed: Any) -> bool:
 @pytest.mark.slow
 @tried(80)
 @given(stories)
-def test_what_was_committed_reads_back_in_order_and_nothing_else(story: list[Any]) -> None:
+def test_only_committed_events_are_read_back_in_order(story: list[Any]) -> None:
     kept: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as name:
         store = Store.open(Path(name))
@@ -149,7 +149,7 @@ def test_what_was_committed_reads_back_in_order_and_nothing_else(story: list[Any
 # Events
 
 
-def test_an_event_says_when_in_utc_who_and_which_robot(tmp_path: Path) -> None:
+def test_an_event_has_utc_time_person_and_robot(tmp_path: Path) -> None:
     toronto = timezone(timedelta(hours=-5))
     with Store.open(tmp_path, now=lambda: NOON.astimezone(toronto)) as store:
         seq = append_body(
@@ -168,7 +168,7 @@ def test_an_event_says_when_in_utc_who_and_which_robot(tmp_path: Path) -> None:
         assert {event.robot for event in store.events()} == {robot}
 
 
-def test_two_folders_are_two_robots(tmp_path: Path) -> None:
+def test_each_folder_has_its_own_robot_id(tmp_path: Path) -> None:
     robots = set()
     for name in ("one", "two"):
         with Store.open(tmp_path / name) as store:
@@ -177,7 +177,7 @@ def test_two_folders_are_two_robots(tmp_path: Path) -> None:
     assert len(robots) == 2
 
 
-def test_last_is_the_newest_of_its_kind(store: Store) -> None:
+def test_last_returns_the_newest_event_of_a_kind(store: Store) -> None:
     assert store.last("joke") is None
     for kind in ("joke", "joke", "call number"):
         append_body(store, kind, {})
@@ -186,7 +186,7 @@ def test_last_is_the_newest_of_its_kind(store: Store) -> None:
 
 
 @pytest.mark.slow
-def test_reading_goes_on_after_a_seq_and_while_appending(store: Store) -> None:
+def test_reading_works_from_a_number_on_and_while_appending(store: Store) -> None:
     with store.transaction():
         for number in range(store_module.WINDOW * 2 + 5):
             append_body(store, "odd" if number % 2 else "even", {"n": number})
@@ -202,7 +202,7 @@ def test_reading_goes_on_after_a_seq_and_while_appending(store: Store) -> None:
     assert seen == total
 
 
-def test_a_reader_that_stops_midway_keeps_nobody_from_writing(store: Store) -> None:
+def test_an_unfinished_reader_does_not_block_writers(store: Store) -> None:
     for number in range(3):
         append_body(store, "call number", {"n": number})
     with Store.open(store.folder, write=False) as console:
@@ -214,13 +214,13 @@ def test_a_reader_that_stops_midway_keeps_nobody_from_writing(store: Store) -> N
 @pytest.mark.parametrize(
     "body", [{"x": float("nan")}, {"x": float("inf")}, {"x": object()}, {"x": "\ud800"}]
 )
-def test_a_body_that_is_not_json_is_refused_and_nothing_is_kept(store: Store, body: Any) -> None:
+def test_a_body_that_is_not_json_is_refused(store: Store, body: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
         append_body(store, "state", body)
     assert list(store.events()) == []
 
 
-def test_a_body_without_end_is_refused(store: Store) -> None:
+def test_an_overly_deep_body_is_refused(store: Store) -> None:
     deep: list[Any] = []
     for _ in range(100_000):
         deep = [deep]
@@ -263,7 +263,7 @@ def test_threads_append_without_losing_or_mixing(store: Store) -> None:
         assert (first.kind, first.body) == (second.kind, second.body)
 
 
-def test_another_thread_sees_nothing_of_an_open_transaction(store: Store) -> None:
+def test_an_open_transaction_is_invisible_to_other_threads(store: Store) -> None:
     seen: list[int] = []
     reader = threading.Thread(target=lambda: seen.append(len(list(store.events()))))
     with suppress(Mishap), store.transaction():
@@ -277,7 +277,7 @@ def test_another_thread_sees_nothing_of_an_open_transaction(store: Store) -> Non
 # Names
 
 
-def test_names_stand_apart_from_the_events(store: Store) -> None:
+def test_names_are_stored_apart_from_events(store: Store) -> None:
     store.rename("p1", "Zacharias Q")
     store.rename("p1", "  Zoë-Ann Ωmega ")
     assert store.names() == {"p1": "Zoë-Ann Ωmega"}
@@ -285,7 +285,7 @@ def test_names_stand_apart_from_the_events(store: Store) -> None:
     assert "Z" not in json.dumps([event.body for event in store.events()])
 
 
-def test_an_old_name_is_nowhere_in_the_folder_after_closing(store: Store) -> None:
+def test_an_old_name_is_erased_from_the_folder_after_closing(store: Store) -> None:
     for person in ("p1", "p2", "p3"):
         store.rename(person, "Zacharias Quillfeather")
     for person in ("p1", "p2", "p3"):
@@ -296,7 +296,7 @@ def test_an_old_name_is_nowhere_in_the_folder_after_closing(store: Store) -> Non
 
 
 @pytest.mark.parametrize("name", ["", "   ", "a\nb", "a\x1b[2J", "a\u202eb", "\udcff", "x" * 41])
-def test_a_name_that_cannot_be_shown_is_refused(store: Store, name: str) -> None:
+def test_an_unprintable_name_is_refused(store: Store, name: str) -> None:
     store.rename("p1", "x" * 40)
     with pytest.raises(TangyError) as caught:
         store.rename("p1", name)
@@ -309,7 +309,7 @@ def test_a_name_that_cannot_be_shown_is_refused(store: Store, name: str) -> None
 
 
 @pytest.mark.parametrize("umask", [0, 0o777])
-def test_nobody_else_can_look_whatever_the_umask(tmp_path: Path, umask: int) -> None:
+def test_the_files_are_private_under_any_umask(tmp_path: Path, umask: int) -> None:
     folder = tmp_path / "log"
     before = os.umask(umask)
     try:
@@ -323,7 +323,7 @@ def test_nobody_else_can_look_whatever_the_umask(tmp_path: Path, umask: int) -> 
         os.umask(before)
 
 
-def test_a_log_that_others_could_read_is_closed_to_them(tmp_path: Path) -> None:
+def test_a_readable_log_is_made_private(tmp_path: Path) -> None:
     fill(tmp_path, 3)
     log_of(tmp_path).chmod(0o644)
     with Store.open(tmp_path) as store:
@@ -331,7 +331,7 @@ def test_a_log_that_others_could_read_is_closed_to_them(tmp_path: Path) -> None:
         assert {mode_of(path) for path in tmp_path.iterdir()} == {0o600}
 
 
-def test_a_second_writer_is_told_which_process_to_close(store: Store) -> None:
+def test_a_second_writer_is_refused_with_the_process_of_the_first(store: Store) -> None:
     with pytest.raises(StoreBusy) as caught:
         Store.open(store.folder)
     assert f"process {os.getpid()} " in str(caught.value) and "--data" in str(caught.value)
@@ -341,7 +341,7 @@ def test_a_second_writer_is_told_which_process_to_close(store: Store) -> None:
         assert append_body(next_one, "mine", {}) == 2
 
 
-def test_a_forgotten_store_lets_the_folder_go(tmp_path: Path) -> None:
+def test_a_garbage_collected_store_releases_its_lock(tmp_path: Path) -> None:
     append_body(Store.open(tmp_path), "greeting", {})
     with Store.open(tmp_path) as store:
         assert append_body(store, "greeting", {}) == 2
@@ -360,7 +360,7 @@ def test_a_console_reads_beside_the_writer_and_writes_nothing(store: Store) -> N
     assert append_body(store, "celebrate", {}) == 3
 
 
-def test_a_console_without_a_log_is_empty_and_makes_nothing(tmp_path: Path) -> None:
+def test_a_console_without_a_log_is_empty_and_creates_nothing(tmp_path: Path) -> None:
     folder = tmp_path / "absent"
     with Store.open(folder, write=False) as console:
         assert list(console.events()) == []
@@ -372,7 +372,7 @@ def test_a_console_without_a_log_is_empty_and_makes_nothing(tmp_path: Path) -> N
             assert [event.kind for event in console.events()] == ["greeting"]
 
 
-def test_a_closed_store_says_so(store: Store) -> None:
+def test_a_closed_store_raises_an_error(store: Store) -> None:
     store.close()
     store.close()
     for deed in (lambda: append_body(store, "x", {}), store.names, lambda: list(store.events())):
@@ -380,7 +380,7 @@ def test_a_closed_store_says_so(store: Store) -> None:
             deed()
 
 
-def test_a_folder_that_cannot_be_is_one_sentence(tmp_path: Path) -> None:
+def test_an_invalid_folder_is_refused_in_one_sentence(tmp_path: Path) -> None:
     file = tmp_path / "notes.txt"
     file.write_text("dear diary")
     (tmp_path / "taken").mkdir()
@@ -396,13 +396,13 @@ def test_a_folder_that_cannot_be_is_one_sentence(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs a folder nobody can write to")
 @pytest.mark.parametrize("folder", ["/proc", "/proc/tangy"])
-def test_a_read_only_folder_is_one_sentence(folder: str) -> None:
+def test_a_read_only_folder_is_refused_in_one_sentence(folder: str) -> None:
     with pytest.raises(StoreError, match=f"{folder}.*--data") as caught:
         Store.open(Path(folder))
     assert caught.value.__suppress_context__
 
 
-def test_a_full_disk_is_one_sentence_and_loses_nothing_acknowledged(tmp_path: Path) -> None:
+def test_a_full_disk_loses_no_acknowledged_event(tmp_path: Path) -> None:
     script = """
 import resource, sys
 from pathlib import Path
@@ -486,7 +486,7 @@ def test_a_damaged_log_is_set_aside_and_a_new_one_begun(
 
 
 @pytest.mark.parametrize("content", [b"no log at all, " * 1000, b"SQLite format 3\0"])
-def test_what_is_no_log_is_set_aside(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_no_log_is_set_aside(tmp_path: Path, content: bytes) -> None:
     log_of(tmp_path).write_bytes(content)
     with Store.open(tmp_path, now=lambda: NOON) as store:
         assert len(store.notices) == 2 and "nobody can tell how many" in store.notices[1]
@@ -494,7 +494,7 @@ def test_what_is_no_log_is_set_aside(tmp_path: Path, content: bytes) -> None:
     assert aside.read_bytes() == content
 
 
-def test_a_tail_whose_log_is_gone_is_set_aside(tmp_path: Path) -> None:
+def test_a_tail_without_its_log_is_set_aside(tmp_path: Path) -> None:
     tail = tmp_path / "tangy.db-wal"
     with Store.open(tmp_path) as store:
         append_body(store, "greeting", {})
@@ -506,7 +506,7 @@ def test_a_tail_whose_log_is_gone_is_set_aside(tmp_path: Path) -> None:
     assert (tmp_path / "tangy.db.damaged-20260304T120000Z-wal").read_bytes() == content
 
 
-def test_damage_met_while_reading_is_said_and_mended_by_the_next_start(
+def test_damage_found_while_reading_is_mended_at_the_next_start(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(log_file, "ALWAYS_CHECKED", 1000)
@@ -523,7 +523,7 @@ def test_damage_met_while_reading_is_said_and_mended_by_the_next_start(
         assert len(store.notices) == 2 and len(list(store.events("state"))) > 300
 
 
-def test_a_console_leaves_a_damaged_log_where_it_is(tmp_path: Path) -> None:
+def test_a_console_leaves_a_damaged_log_in_place(tmp_path: Path) -> None:
     log_of(tmp_path).write_bytes(b"no log at all, " * 1000)
     with pytest.raises(StoreError, match="damaged"):
         Store.open(tmp_path, write=False)
@@ -539,7 +539,7 @@ def test_a_console_leaves_a_damaged_log_where_it_is(tmp_path: Path) -> None:
         ("DROP TRIGGER unchanged;", "guard"),
     ],
 )
-def test_check_says_what_was_tampered_with(tmp_path: Path, tampering: str, word: str) -> None:
+def test_check_reports_tampering(tmp_path: Path, tampering: str, word: str) -> None:
     fill(tmp_path, 3)
     rebuild(tmp_path, tampering)
     with Store.open(tmp_path) as store:
@@ -561,7 +561,7 @@ def fill_first_version(folder: Path) -> None:
             store.file.db.execute("INSERT INTO name VALUES ('user1', 'Rosalind')")
 
 
-def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
+def test_a_migrated_copy_of_an_older_log_contains_no_names(tmp_path: Path) -> None:
     fill_first_version(tmp_path)
     (tmp_path / "tangy.db.copying").write_text("Rosalind: a copy that was cut off")
     with Store.open(tmp_path, write=False) as console:
@@ -575,7 +575,7 @@ def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
     assert b"Rosalind" in log_of(tmp_path).read_bytes()
 
 
-def test_an_older_log_that_another_process_writes_is_read_as_it_is(tmp_path: Path) -> None:
+def test_an_older_log_of_a_running_writer_is_read_unchanged(tmp_path: Path) -> None:
     fill_first_version(tmp_path)
     held, _ = log_file.hold(tmp_path / "tangy.lock")
     before = log_of(tmp_path).read_bytes()
@@ -589,7 +589,7 @@ def test_an_older_log_that_another_process_writes_is_read_as_it_is(tmp_path: Pat
             assert console.pronunciations() == {"user1": "R OW Z"}
 
 
-def test_an_older_log_that_cannot_be_written_is_read_as_it_is(
+def test_an_unwritable_older_log_is_read_unchanged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fill_first_version(tmp_path)
@@ -606,7 +606,7 @@ def test_an_older_log_that_cannot_be_written_is_read_as_it_is(
         assert set(tmp_path.iterdir()) == there, "SQLite makes nothing beside it"
 
 
-def test_an_older_log_that_is_damaged_is_left_to_its_writer(tmp_path: Path) -> None:
+def test_a_damaged_older_log_is_left_to_its_writer(tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         fill(tmp_path)
@@ -619,7 +619,7 @@ def test_an_older_log_that_is_damaged_is_left_to_its_writer(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("write", [True, False])
-def test_an_older_log_is_copied_and_brought_up_to_date(
+def test_an_older_log_is_copied_and_migrated(
     tmp_path: Path, write: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fill(tmp_path, 3)
@@ -641,7 +641,7 @@ def test_an_older_log_is_copied_and_brought_up_to_date(
         assert db.execute("SELECT x FROM shelf").fetchall() == [(7,)]
 
 
-def test_a_log_of_version_0_keeps_what_is_in_it(tmp_path: Path) -> None:
+def test_a_log_of_version_0_keeps_its_content(tmp_path: Path) -> None:
     rebuild(tmp_path, "CREATE TABLE note (x); INSERT INTO note VALUES ('kept');")
     with Store.open(tmp_path) as store:
         assert append_body(store, "greeting", {}) == 1
@@ -651,7 +651,7 @@ def test_a_log_of_version_0_keeps_what_is_in_it(tmp_path: Path) -> None:
     assert len(list(tmp_path.glob("tangy.db.version-0-*"))) == 1
 
 
-def test_a_step_that_fails_leaves_the_log_as_it_was(
+def test_a_failed_migration_leaves_the_log_unchanged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fill(tmp_path, 3)

@@ -1,4 +1,4 @@
-"""What the log rests on in SQLite is asked for, asked about, and refused where it is not given."""
+"""The SQLite settings that the log needs are set, verified, and required."""
 
 import sqlite3
 from contextlib import closing
@@ -40,7 +40,7 @@ def asked(store: Store, setting: str) -> Any:
     return db.execute(f"PRAGMA {setting}").fetchone()[0]
 
 
-def test_each_commit_of_a_writer_waits_for_the_disk_however_sqlite_was_built(
+def test_each_commit_is_synced_with_any_build_of_sqlite(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     otherwise_built(monkeypatch)
@@ -51,7 +51,7 @@ def test_each_commit_of_a_writer_waits_for_the_disk_however_sqlite_was_built(
 
 
 @pytest.mark.parametrize("setting", ["synchronous", "secure_delete", "journal_mode"])
-def test_a_log_that_sqlite_will_not_keep_as_promised_is_refused(
+def test_a_log_without_the_required_sqlite_settings_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, setting: str
 ) -> None:
     otherwise_built(monkeypatch, deaf=setting)
@@ -66,7 +66,7 @@ def test_a_log_that_sqlite_will_not_keep_as_promised_is_refused(
         )
 
 
-def test_a_disk_that_cannot_hold_a_tail_beside_the_log_is_refused_in_a_sentence(
+def test_a_disk_without_support_for_wal_is_refused_in_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def on_a_simple_disk(file: str, **how: Any) -> sqlite3.Connection:
@@ -78,7 +78,7 @@ def test_a_disk_that_cannot_hold_a_tail_beside_the_log_is_refused_in_a_sentence(
         Store.open(tmp_path)
 
 
-def test_the_connection_of_a_console_itself_takes_no_change(tmp_path: Path) -> None:
+def test_the_connection_of_a_console_is_read_only(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.rename("user1", "Rosa")
         with Store.open(tmp_path, write=False) as console:
@@ -91,7 +91,7 @@ def test_the_connection_of_a_console_itself_takes_no_change(tmp_path: Path) -> N
         assert store.names() == {"user1": "Rosa"}
 
 
-def test_a_console_that_could_write_is_refused(
+def test_a_writable_console_connection_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Store.open(tmp_path).close()
@@ -100,7 +100,7 @@ def test_a_console_that_could_write_is_refused(
         Store.open(tmp_path, write=False)
 
 
-def test_a_log_that_a_reader_brought_up_to_date_is_vouched_for(
+def test_a_log_migrated_by_a_reader_is_marked_as_checked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """So that the next writer need not read all of a large log that nobody touched since."""

@@ -1,4 +1,4 @@
-"""The line of a key is found, however a TOML file is written."""
+"""Finding the line of a key in any style of TOML."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ y = 2
         (("missing",), None),
     ],
 )
-def test_a_key_or_the_table_it_is_missing_in_has_a_line(path: KeyPath, line: int | None) -> None:
+def test_the_line_of_a_key_or_its_table_is_found(path: KeyPath, line: int | None) -> None:
     assert line_of(TEXT, path) == line
 
 
-def test_a_file_is_searched_no_longer_than_a_moment() -> None:
+def test_the_search_of_a_large_file_is_bounded() -> None:
     assert line_of("a = [\n" + "1,\n" * 300_000 + "]\nb = 1\n", ("b",)) is None

@@ -1,4 +1,4 @@
-"""The stage rules, the first-come queue and the closing of requests, as the activity has them."""
+"""The stage rules, the first-come queue and the closing of requests of an activity."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def won() -> Tracker:
         (won(), ("end", "AR", "occluded"), "valediction"),
     ],
 )
-def test_the_rules_bring_about_every_row_of_table_two(
+def test_the_rules_produce_every_row_of_table_two(
     tracker: Tracker, row: tuple[str, str, str], behaviour: str
 ) -> None:
     situation = tracker.state().situation
@@ -115,7 +115,7 @@ def happen(tracker: Tracker, kind: str, what: str) -> None:
 
 
 @given(facts())
-def test_the_stage_is_that_of_the_first_rule_that_matches(told: list[tuple[str, str]]) -> None:
+def test_the_first_matching_rule_gives_the_stage(told: list[tuple[str, str]]) -> None:
     tracker = Tracker(BINGO, IDS)
     done: list[str] = []
     for kind, what in told:
@@ -137,7 +137,7 @@ def test_the_stage_is_that_of_the_first_rule_that_matches(told: list[tuple[str, 
 
 
 @given(facts())
-def test_the_state_says_what_the_rules_keep(told: list[tuple[str, str]]) -> None:
+def test_the_state_includes_the_data_of_the_rules(told: list[tuple[str, str]]) -> None:
     tracker = Tracker(BINGO, IDS)
     for kind, what in told:
         happen(tracker, kind, what)
@@ -190,7 +190,7 @@ def test_a_request_that_comes_during_a_visit_waits_its_turn() -> None:
 
 @pytest.mark.parametrize("behaviour", list(BINGO.behaviours))
 @pytest.mark.parametrize("card", [*READ, None])
-def test_a_request_closes_on_encourage_or_when_a_mended_card_is_correct(
+def test_a_request_closes_by_encouragement_or_a_corrected_card(
     behaviour: str, card: str | None
 ) -> None:
     tracker = with_user(card)
@@ -205,21 +205,21 @@ def test_a_request_closes_on_encourage_or_when_a_mended_card_is_correct(
     assert tracker.closed is None, "closing belongs to the one step that did it"
 
 
-def test_closing_needs_the_robot_to_be_with_the_person_who_asked() -> None:
+def test_a_request_closes_only_beside_its_person() -> None:
     tracker = asked()
     tracker.executed(BINGO.behaviours["encourage"])
     assert tracker.queue == ["user3"]
 
 
 @pytest.mark.parametrize("behaviour", list(BINGO.behaviours))
-def test_what_did_not_succeed_is_a_step_and_nothing_else(behaviour: str) -> None:
+def test_a_failed_behaviour_only_counts_as_a_step(behaviour: str) -> None:
     tracker = with_user(RIGHT)
     before = tracker.state()
     tracker.executed(BINGO.behaviours[behaviour], succeeded=False)
     assert tracker.state() == before._replace(step=before.step + 1)
 
 
-def test_leaving_a_person_loses_sight_of_the_card() -> None:
+def test_leaving_a_person_clears_the_card_state() -> None:
     tracker = with_user("missing numbers")
     tracker.arrive("user2")
     assert tracker.state().situation == Situation("help", "AR", "occluded")
@@ -253,12 +253,12 @@ def test_two_counts_since_the_same_behaviour_are_kept_apart(activity: Activity) 
     assert stages == [*["facilitate"] * 3, "socialize", "stretch", "facilitate"]
 
 
-def test_nobody_of_an_unknown_id_has_a_state() -> None:
+def test_an_unknown_id_has_no_state() -> None:
     with pytest.raises(KeyError):
         begun().state().user("user9")
 
 
-def test_what_must_come_before_is_begun_only_when_all_of_it_was_done(activity: Activity) -> None:
+def test_the_game_has_begun_after_all_required_behaviours(activity: Activity) -> None:
     rules = (
         StageRule("start", "before", "greeting"),
         StageRule("warm up", "before", "joke"),
@@ -274,7 +274,7 @@ def test_what_must_come_before_is_begun_only_when_all_of_it_was_done(activity: A
 
 
 @pytest.mark.parametrize("jokes", [{}, {10: True}, {10: False}, {5: False, 10: False}])
-def test_a_joke_that_came_to_nothing_is_told_from_the_log_by_a_later_stage(
+def test_a_joke_without_effect_is_inferred_from_a_later_stage(
     jokes: dict[int, bool],
 ) -> None:
     """The log says of each joke that the robot told it; only the stages say whether it counts."""

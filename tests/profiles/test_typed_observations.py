@@ -1,4 +1,4 @@
-"""What staff tell of people in words of the activity is observed of the fact that they mean."""
+"""Typed observations of staff set the fact that their words name."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _game(name: str, *done: str) -> DeclaredGame:
 
 
 @pytest.mark.parametrize("said", ["b", "B", "Earth", "the earth"])
-def test_an_answer_is_a_letter_or_the_words(said: str) -> None:
+def test_an_answer_is_typed_as_letter_or_words(said: str) -> None:
     game = _game("trivia", "welcome everyone", "ask question")
     found = meant(game, "user1", said)
     assert found is not None and (found.fact, found.who) == ("answer", "user1")
@@ -27,13 +27,13 @@ def test_an_answer_is_a_letter_or_the_words(said: str) -> None:
     assert game.value("answer", "user1") == "right"
 
 
-def test_words_that_name_nobody_are_about_whose_turn_it_is() -> None:
+def test_words_without_a_name_belong_to_the_player_in_turn() -> None:
     game = _game("trivia", "welcome everyone", "ask question")
     assert meant(game, None, "mars") == TypedObservation("answer", "user1", "mars")
 
 
 @pytest.mark.parametrize("said", ["jupiter", "", "?", "none of them"])
-def test_words_that_are_no_option_say_nothing(said: str) -> None:
+def test_words_outside_the_options_are_ignored(said: str) -> None:
     assert meant(_game("trivia", "welcome everyone", "ask question"), "user1", said) is None
 
 
@@ -56,11 +56,11 @@ def test_a_fact_or_a_value_is_enough(activity: str, said: str, fact: str, raw: s
     assert found is not None and (found.fact, found.raw) == (fact, raw)
 
 
-def test_a_fact_of_the_group_is_nobodys() -> None:
+def test_a_fact_of_the_group_belongs_to_nobody() -> None:
     assert meant(_game("memory"), "user2", "miss") == TypedObservation("cards", None, "miss")
 
 
-def test_what_can_be_said_are_the_options_and_the_facts() -> None:
+def test_the_suggestions_are_the_options_and_the_facts() -> None:
     game = _game("trivia", "welcome everyone", "ask question")
     assert sayable(game) == ["Mars", "Earth", "Saturn"]
     assert sayable(_game("exercises")) == ["joins", "tired"]

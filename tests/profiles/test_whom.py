@@ -1,4 +1,4 @@
-"""Whom a behaviour is for is learnt with what is done; where selectors disagree, Tangy asks."""
+"""The addressee of a behaviour is learnt with it; if selectors disagree, Tangy asks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_one_step_leaves_the_selectors_that_named_the_person() -> None:
     assert whom == {("repeat", BEHAVIOUR.name): ("first asking", "whose turn")}
 
 
-def test_where_those_left_disagree_nothing_is_sure() -> None:
+def test_disagreeing_selectors_are_uncertain() -> None:
     whom = learnt((state("ann", "ann"), "ann"))
     found = addressee(whom, BEHAVIOUR, state("ann", "ben"))
     assert not found.sure
@@ -44,7 +44,7 @@ def test_a_second_step_decides_between_them() -> None:
     assert (found.person, found.selectors, found.sure) == ("ben", ("first asking",), True)
 
 
-def test_the_group_is_a_choice_like_any() -> None:
+def test_the_group_can_be_the_addressee() -> None:
     whom = learnt((state("ann", "ben"), None))
     found = addressee(whom, BEHAVIOUR, state("ben", "ann"))
     assert (found.person, found.sure) == (None, True)

@@ -1,4 +1,4 @@
-"""The person of a fact: the first for whom it came to be so, in stages and behaviours."""
+"""Selecting the person of a fact: the first for whom it holds, in stages and behaviours."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def game(activity: DeclaredActivity) -> DeclaredGame:
     return game
 
 
-def test_of_several_the_first_to_be_right_is_meant(game: DeclaredGame) -> None:
+def test_the_selector_means_the_first_of_several_people(game: DeclaredGame) -> None:
     assert game.whom(RIGHT) is None
     for one, said in (("cat", "a dog"), ("ann", "dogs"), ("ben", "a fish")):
         game.observe("guess", one, said)
@@ -49,7 +49,7 @@ def test_of_several_the_first_to_be_right_is_meant(game: DeclaredGame) -> None:
     assert game.whom(RIGHT) is None
 
 
-def test_who_was_first_is_kept_in_the_log_and_tells_states_apart(game: DeclaredGame) -> None:
+def test_the_first_person_is_stored_and_part_of_the_state(game: DeclaredGame) -> None:
     other = game.copy()
     for one in ("cat", "ann"):
         game.observe("guess", one, "a dog")
@@ -62,7 +62,7 @@ def test_who_was_first_is_kept_in_the_log_and_tells_states_apart(game: DeclaredG
 
 
 @pytest.mark.slow
-def test_all_games_with_it_are_searched(activity: DeclaredActivity) -> None:
+def test_games_with_the_selector_are_searched_completely(activity: DeclaredActivity) -> None:
     found = findings(activity)
     assert found.flaws == () and not any(one.cut for one in found.searches)
 
@@ -79,7 +79,7 @@ def test_all_games_with_it_are_searched(activity: DeclaredActivity) -> None:
     ],
 )
 @pytest.mark.parametrize("key", ["about", "to", "expected"])
-def test_a_mistake_in_it_is_told_with_its_place(
+def test_a_mistake_in_the_selector_is_reported_with_its_place(
     tmp_path: Path, key: str, written_as: str, told: str
 ) -> None:
     shutil.copy(BUZZ.with_suffix(".csv"), tmp_path)
@@ -95,11 +95,11 @@ def test_a_mistake_in_it_is_told_with_its_place(
     assert written_as in file.read_text(encoding="utf-8").splitlines()[number - 1]
 
 
-def test_people_read_who_is_meant() -> None:
+def test_the_selector_has_words() -> None:
     assert selector_words(RIGHT) == "the person whose guess is right"
 
 
-def test_a_stage_about_whom_a_fact_selects_never_sees_it_otherwise(tmp_path: Path) -> None:
+def test_a_stage_about_a_selected_person_sees_only_the_selected_value(tmp_path: Path) -> None:
     shutil.copy(BUZZ.with_suffix(".csv"), tmp_path)
     text = BUZZ.read_text(encoding="utf-8")
     about = 'about = "whose guess is right"'

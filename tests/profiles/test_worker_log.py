@@ -1,4 +1,4 @@
-"""A worker's log keeps what was said last, and never grows beyond its bounds."""
+"""A worker's log keeps its newest lines within a bound."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LINE = b"something was said\n"
 
 
 @pytest.mark.parametrize("size", [0, len(LINE), MOST // len(LINE) * len(LINE)])
-def test_a_log_that_is_not_too_long_is_appended_to(size: int, tmp_path: Path) -> None:
+def test_a_short_log_is_appended_to(size: int, tmp_path: Path) -> None:
     path = tmp_path / "worker.log"
     path.write_bytes(LINE * (size // len(LINE)))
     with open_log(path) as log:
@@ -22,7 +22,7 @@ def test_a_log_that_is_not_too_long_is_appended_to(size: int, tmp_path: Path) ->
     assert path.read_bytes() == LINE * (size // len(LINE)) + b"more\n"
 
 
-def test_a_log_that_is_too_long_keeps_its_last_whole_lines(tmp_path: Path) -> None:
+def test_a_long_log_keeps_its_last_complete_lines(tmp_path: Path) -> None:
     path = tmp_path / "worker.log"
     path.write_bytes(b"old\n" + LINE * (2 * MOST // len(LINE)))
     with path.open("ab") as other, open_log(path) as log:  # another program has it open
@@ -35,19 +35,19 @@ def test_a_log_that_is_too_long_keeps_its_last_whole_lines(tmp_path: Path) -> No
     assert set(kept.splitlines(keepends=True)) == {LINE, b"more\n", b"theirs\n"}
 
 
-def test_one_line_without_an_end_is_cut_as_well(tmp_path: Path) -> None:
+def test_an_endless_line_is_cut(tmp_path: Path) -> None:
     path = tmp_path / "worker.log"
     path.write_bytes(b"x" * (3 * MOST))
     with open_log(path):
         assert path.stat().st_size <= KEPT
 
 
-def test_where_it_cannot_be_written_the_reason_is_given(tmp_path: Path) -> None:
+def test_an_unwritable_log_raises_the_reason(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="No such file"):
         open_log(tmp_path / "none" / "worker.log")
 
 
-def test_its_owner_alone_may_read_it(tmp_path: Path) -> None:
+def test_the_log_is_private(tmp_path: Path) -> None:
     old, new = tmp_path / "old.log", tmp_path / "new.log"
     old.touch(0o644)
     old.chmod(0o644)
@@ -61,7 +61,7 @@ def test_its_owner_alone_may_read_it(tmp_path: Path) -> None:
         os.umask(before)
 
 
-def test_a_pipe_that_nobody_reads_is_no_log(tmp_path: Path) -> None:
+def test_a_pipe_or_device_is_refused_as_a_log(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.log")
     (tmp_path / "null.log").symlink_to("/dev/null")
     for name in ("pipe.log", "null.log"):
