@@ -1,4 +1,4 @@
-"""Asking: where Tangy is not sure it does nothing but ask, and learns the answer at once."""
+"""Asking: if Tangy is not sure, it only asks, and learns the answer at once."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def facilitation(store: Store, activity: Activity, cover: Cover) -> Facilitation
     return asking(store, activity, learnt(store, activity, shown, FEW))
 
 
-def test_what_nobody_showed_is_asked_and_nothing_happens_before_the_answer(
+def test_an_undemonstrated_situation_asks_and_waits_for_the_answer(
     facilitation: Facilitation, store: Store
 ) -> None:
     question = until_asked(facilitation)
@@ -99,7 +99,7 @@ def test_what_nobody_showed_is_asked_and_nothing_happens_before_the_answer(
 
 
 @pytest.mark.slow
-def test_demonstrations_that_disagree_are_asked_about(
+def test_contradicting_demonstrations_cause_a_question(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
     shown = cover("bingo", 1, 4)
@@ -118,7 +118,7 @@ def test_demonstrations_that_disagree_are_asked_about(
 
 
 @pytest.mark.slow
-def test_a_vote_below_the_threshold_is_asked_about(
+def test_a_vote_below_the_threshold_causes_a_question(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
     policy = learnt(store, activity, cover("bingo", 1, 4), PAPER)
@@ -166,7 +166,7 @@ def test_the_replay_goes_through_every_earlier_step(
     assert "nothing else changed" in replay_words(activity, replay)
 
 
-def test_the_game_goes_on_to_its_end_and_does_not_ask_twice(
+def test_the_game_continues_and_does_not_ask_twice(
     facilitation: Facilitation, store: Store, activity: Activity
 ) -> None:
     until_asked(facilitation)
@@ -195,7 +195,7 @@ def test_a_command_is_verified_before_it_is_an_answer(
     assert facilitation.steps == 0
 
 
-def test_giving_up_ends_the_game_and_teaches_nothing(
+def test_giving_up_ends_the_game_without_learning(
     facilitation: Facilitation, store: Store, activity: Activity
 ) -> None:
     question = until_asked(facilitation)
@@ -227,7 +227,7 @@ def test_leaving_ends_the_game_in_the_log(
 
 
 @pytest.mark.parametrize("fails", ["game step", "policy learnt", "demonstration step"])
-def test_an_answer_that_cannot_be_kept_loses_nothing(
+def test_an_unstorable_answer_loses_nothing(
     facilitation: Facilitation,
     store: Store,
     activity: Activity,
@@ -261,7 +261,7 @@ def test_an_answer_that_cannot_be_kept_loses_nothing(
 @pytest.mark.slow
 @settings(max_examples=12)
 @given(data=st.data(), seed=st.integers(1, 10_000))
-def test_whatever_was_left_out_is_asked_once_and_known_from_then_on(
+def test_each_missing_situation_is_asked_about_once(
     activity: Activity, cover: Cover, data: st.DataObject, seed: int
 ) -> None:
     gaps = data.draw(st.sets(st.sampled_from(activity.situations), min_size=1, max_size=5))
@@ -304,7 +304,7 @@ def answered(facilitation: Facilitation, activity: Activity, behaviour: str) -> 
     return taught
 
 
-def test_an_answer_that_somebody_gave_settles_the_conflict_for_later_learning_too(
+def test_an_answer_given_before_resolves_the_conflict_for_later_learning(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
     where, policy = disagreeing(store, activity, cover)
@@ -316,7 +316,7 @@ def test_an_answer_that_somebody_gave_settles_the_conflict_for_later_learning_to
     assert read_library(store, "bingo").conflicts == []
 
 
-def test_an_answer_that_nobody_gave_before_settles_nothing(
+def test_a_new_answer_does_not_resolve_the_conflict(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
     where, policy = disagreeing(store, activity, cover)
@@ -330,7 +330,7 @@ def test_an_answer_that_nobody_gave_before_settles_nothing(
     assert until_asked(facilitation).state.situation == where
 
 
-def test_what_a_teacher_has_settled_is_not_unsettled_by_an_answer_to_an_older_policy(
+def test_an_answer_to_an_older_policy_does_not_reopen_a_resolution(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
     where, policy = disagreeing(store, activity, cover)
@@ -349,7 +349,7 @@ def test_what_a_teacher_has_settled_is_not_unsettled_by_an_answer_to_an_older_po
 
 
 @pytest.mark.slow
-def test_an_answer_that_agrees_is_enough_where_the_trees_do_not(
+def test_one_agreeing_answer_settles_a_split_vote(
     store: Store, activity: Activity, cover: Cover
 ) -> None:
     policy = learnt(store, activity, cover("bingo", 1, 4), PAPER)

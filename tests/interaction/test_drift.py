@@ -1,4 +1,4 @@
-"""A change of what works with somebody is noticed, said in words, and what was before forgotten."""
+"""Drift detection: a changed preference is noticed, described, and its past forgotten."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ def answers(seed: int, *parts: tuple[int, float]) -> list[bool]:
     return [draw() < rate for times, rate in parts for _ in range(times)]
 
 
-def test_a_change_is_found_where_it_was() -> None:
+def test_the_change_point_is_found() -> None:
     assert change_point([True] * 20 + [False] * 10) == 20
     assert change_point([False] * 15 + [True] * 15) == 15
 
 
 @pytest.mark.parametrize("responses", [[], [True], [True] * (FEWEST - 1), [False] * 200])
-def test_nothing_has_changed_where_all_is_alike_or_little_is_known(responses: list[bool]) -> None:
+def test_uniform_or_few_responses_have_no_change_point(responses: list[bool]) -> None:
     assert change_point(responses) is None
 
 
 @pytest.mark.parametrize("rate", [0.1, 0.4, 0.6, 0.9])
-def test_with_people_who_do_not_change_a_change_is_hardly_ever_seen(rate: float) -> None:
+def test_the_false_alarm_rate_for_constant_people_is_low(rate: float) -> None:
     people = 60
     seen = sum(
         bool(DriftWatch(("praise", one) for one in answers(seed, (80, rate))).changes)
@@ -51,7 +51,7 @@ def test_a_change_from_nine_in_ten_to_two_in_ten_is_noticed_soon() -> None:
     assert len(taken) == 30 and sorted(taken)[15] < 20
 
 
-def test_only_what_came_before_the_change_of_that_strategy_is_forgotten() -> None:
+def test_only_earlier_responses_of_the_changed_strategy_are_forgotten() -> None:
     responses = [("praise", True)] * 20 + [("neutral", True)] * 5 + [("praise", False)] * 10
     watch = DriftWatch(responses)
     prior = {"praise": Beta(), "neutral": Beta()}
@@ -62,7 +62,7 @@ def test_only_what_came_before_the_change_of_that_strategy_is_forgotten() -> Non
     assert watch.drifts[0].worse
 
 
-def test_a_choice_turns_to_another_strategy_sooner_after_a_change() -> None:
+def test_drift_detection_switches_the_strategy_sooner() -> None:
     def used(*, notices: bool) -> int:
         people = Persuasion(["a"], ["x", "y"], Random(4), notices_drift=notices)
         for _ in range(60):
@@ -77,7 +77,7 @@ def test_a_choice_turns_to_another_strategy_sooner_after_a_change() -> None:
     assert used(notices=True) < 0.5 * used(notices=False)
 
 
-def test_it_is_read_from_the_log_and_said_in_words(workspace: Workspace) -> None:
+def test_a_change_is_read_from_the_log_and_described_in_words(workspace: Workspace) -> None:
     rosa = workspace.people[0]
     feedback = Feedback(workspace.store)
     strategy, other, *_ = workspace.activity.strategies

@@ -1,4 +1,4 @@
-"""Facilitation: the policy decides, persuasion chooses the words, and all of it is in the log."""
+"""Facilitation: the policy decides, persuasion chooses the words, and every step is logged."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_a_game_is_played_from_the_greeting_to_the_goodbye(facilitate: Make) -> 
     assert (events[-1].steps, events[-1].stopped) == (len(names), None)
 
 
-def test_every_step_does_what_the_policy_says_for_the_observed_state(
+def test_every_step_follows_the_policy_for_the_observed_state(
     facilitate: Make, policy: Policy, activity: Activity
 ) -> None:
     for number, act in enumerate(acts(play(facilitate(2))), 1):
@@ -56,7 +56,7 @@ def test_every_step_does_what_the_policy_says_for_the_observed_state(
         assert act.after.step == act.state.step + 1
 
 
-def test_persuasion_chooses_the_words_where_somebody_must_comply_and_only_there(
+def test_a_strategy_is_chosen_only_for_persuading_behaviours(
     facilitate: Make, activity: Activity
 ) -> None:
     events = play(facilitate(3), 6)
@@ -72,9 +72,7 @@ def test_persuasion_chooses_the_words_where_somebody_must_comply_and_only_there(
     assert len({act.action.strategy for act in acts(events)}) == 4
 
 
-def test_what_is_said_names_the_person_and_the_numbers(
-    facilitate: Make, activity: Activity
-) -> None:
+def test_the_speech_names_the_person_and_the_numbers(facilitate: Make, activity: Activity) -> None:
     for act in acts(play(facilitate(4), 4)):
         assert "{" not in act.speech + act.image
         template = activity.behaviours[act.action.behaviour.name].speech[act.action.strategy]
@@ -85,7 +83,7 @@ def test_what_is_said_names_the_person_and_the_numbers(
             assert activity.deck.label(number) in act.speech
 
 
-def test_each_response_updates_the_belief_in_the_strategy_that_was_used(facilitate: Make) -> None:
+def test_each_response_updates_the_posterior_of_the_used_strategy(facilitate: Make) -> None:
     facilitation = facilitate(5)
     counted: dict[tuple[str, str], Beta] = {}
     acted: Acted | None = None
@@ -111,7 +109,7 @@ def test_each_response_updates_the_belief_in_the_strategy_that_was_used(facilita
 
 
 @pytest.mark.slow
-def test_it_stops_and_says_why_where_nobody_has_shown_what_to_do(
+def test_an_undemonstrated_situation_ends_the_game_with_the_reason(
     facilitate: Make, policy: Policy, activity: Activity
 ) -> None:
     for situation in activity.situations:
@@ -123,9 +121,7 @@ def test_it_stops_and_says_why_where_nobody_has_shown_what_to_do(
         }
 
 
-def test_it_stops_and_says_why_where_the_forest_is_not_sure(
-    facilitate: Make, policy: Policy
-) -> None:
+def test_an_unsure_decision_ends_the_game_with_the_reason(facilitate: Make, policy: Policy) -> None:
     start = Situation("start", "ANR", "occluded")
     ended = play(facilitate(11, without(policy, start, share=0.69)))[-1]
     assert isinstance(ended, GameEnded)
@@ -136,7 +132,7 @@ def test_it_stops_and_says_why_where_the_forest_is_not_sure(
     assert acts(play(facilitate(11, without(policy, start, share=0.7))))
 
 
-def test_a_game_that_goes_round_in_circles_is_stopped(
+def test_a_game_without_progress_is_stopped(
     facilitate: Make, policy: Policy, monkeypatch: pytest.MonkeyPatch, store: Store
 ) -> None:
     monkeypatch.setattr(room, "MOST_STEPS", 50)
@@ -149,14 +145,14 @@ def test_a_game_that_goes_round_in_circles_is_stopped(
     assert kept.body["stopped"] == ended.stopped
 
 
-def test_a_behaviour_that_is_not_expected_is_not_right(facilitate: Make, policy: Policy) -> None:
+def test_an_unexpected_behaviour_is_not_right(facilitate: Make, policy: Policy) -> None:
     start = Situation("start", "ANR", "occluded")
     facilitation = facilitate(11, without(policy, start, behaviour="joke"))
     facilitation.begin()
     assert not acts(facilitation.step())[0].right
 
 
-def test_after_the_end_there_are_no_steps_until_the_next_game(facilitate: Make) -> None:
+def test_no_steps_follow_the_end_until_the_next_game(facilitate: Make) -> None:
     facilitation = facilitate(12)
     assert facilitation.step() == []
     play(facilitation)
@@ -180,7 +176,7 @@ def test_the_same_seed_plays_the_same_games(users: int, facilitate: Make, store:
 
 
 @pytest.mark.slow
-def test_a_made_up_activity_is_facilitated_by_the_same_code(
+def test_a_made_up_activity_is_facilitated(
     lanterns: Activity, cover: Cover, facilitate: Make
 ) -> None:
     shown = [d for seed in (1, 2) for d in cover("lanterns", seed, 4)]
@@ -192,7 +188,7 @@ def test_a_made_up_activity_is_facilitated_by_the_same_code(
     assert any(isinstance(event, BeliefUpdated) for event in events)
 
 
-def test_people_who_play_without_a_mistake_are_only_celebrated(
+def test_people_without_mistakes_only_get_a_celebration(
     activity: Activity, policy: Policy, store: Store, ids: tuple[str, ...]
 ) -> None:
     perfect = replace(load_users(), miss=0, slip=0, ask=0, occluded=0)
@@ -202,7 +198,7 @@ def test_people_who_play_without_a_mistake_are_only_celebrated(
     assert not any(isinstance(event, BeliefUpdated) for event in events)
 
 
-def test_what_the_world_could_not_carry_out_is_no_success(
+def test_a_failed_behaviour_is_no_success(
     facilitate: Make, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     execute = SimulatedWorld.execute

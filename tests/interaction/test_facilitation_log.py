@@ -1,4 +1,4 @@
-"""What happens in a game is in the log before it is told, all of a step or nothing."""
+"""The log of a game: each step is written completely or not at all, before it is returned."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.interaction.conftest import acts, play
 Make = Callable[..., Facilitation]
 
 
-def test_what_happens_is_in_the_log_before_it_is_told(facilitate: Make, store: Store) -> None:
+def test_events_are_logged_before_they_are_returned(facilitate: Make, store: Store) -> None:
     facilitation = facilitate(6)
     facilitation.begin()
     kinds = {
@@ -35,7 +35,7 @@ def test_what_happens_is_in_the_log_before_it_is_told(facilitate: Make, store: S
         assert [event.kind for event in store.events()] == told
 
 
-def test_the_log_tells_the_game_again(facilitate: Make, store: Store, policy: Policy) -> None:
+def test_the_log_replays_the_game(facilitate: Make, store: Store, policy: Policy) -> None:
     events = play(facilitate(7, users=2))
     begun = store.last(GameBeginning)
     assert begun is not None
@@ -50,16 +50,14 @@ def test_the_log_tells_the_game_again(facilitate: Make, store: Store, policy: Po
         assert (kept.body["draws"] or {}) == (dict(act.choice.draws) if act.choice else {})
 
 
-def test_beliefs_last_between_games_and_runs_because_the_log_has_the_responses(
-    facilitate: Make, store: Store
-) -> None:
+def test_posteriors_are_restored_from_logged_responses(facilitate: Make, store: Store) -> None:
     first = facilitate(8)
     play(first, 5)
     assert store.responses()
     assert facilitate(9).persuasion.beliefs == first.persuasion.beliefs
 
 
-def test_a_step_that_cannot_be_kept_leaves_nothing_of_it_in_the_log(
+def test_a_failed_step_leaves_no_part_in_the_log(
     facilitate: Make, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     facilitation = facilitate(10)

@@ -1,4 +1,4 @@
-"""What staff say afterwards: whatever the order, beliefs rest on exactly what the log says."""
+"""Feedback by staff: in any order, posteriors follow exactly from the log."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ fresh = (f"p{number}" for number in count())
 
 
 class Clock:
-    """A clock that goes on only when it is told to."""
+    """A clock that the test advances."""
 
     def __init__(self) -> None:
         self.now = datetime(2026, 3, 1, 10, tzinfo=UTC)
@@ -65,7 +65,7 @@ def respond(store: Store, person: str, strategy: str, complied: bool, game: str 
 
 @dataclass
 class Answer:
-    """A response as the model of the log has it: which request it answers, and whether it holds."""
+    """A response in the model of the log: its request, and whether it counts."""
 
     seq: int
     request: int
@@ -76,7 +76,7 @@ class Answer:
 
 @dataclass
 class Model:
-    """What the log ought to come to, kept in the simplest way: every answer, and a stack."""
+    """A simple reference model of the log: every answer, and an undo stack."""
 
     answers: list[Answer] = field(default_factory=list)
     changes: list[tuple[str, Answer]] = field(default_factory=list)
@@ -152,7 +152,7 @@ def refused(attempt: object) -> bool:
 
 @tried(60)
 @given(moves)
-def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedback_and_undo(
+def test_counts_match_the_log_after_any_sequence_of_changes(
     log: Store, told: list[tuple[str, str | int, bool]]
 ) -> None:
     person, model = next(fresh), Model()
@@ -180,7 +180,7 @@ def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedba
 @pytest.mark.slow
 @tried(30)
 @given(moves, st.sampled_from([FORGETFUL, DAILY, PersuasionConfig("bayes-ucb", "people")]))
-def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_recalled_ones(
+def test_live_and_recalled_posteriors_agree_for_any_method(
     log: Store, clock: Clock, told: list[tuple[str, str | int, bool]], chosen: PersuasionConfig
 ) -> None:
     person, model = next(fresh), Model()
@@ -209,7 +209,7 @@ def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_re
     st.lists(st.tuples(st.sampled_from(STRATEGIES), st.booleans()), min_size=1, max_size=8),
     st.randoms(use_true_random=False),
 )
-def test_late_feedback_comes_to_the_same_in_whatever_order_it_arrives(
+def test_the_order_of_late_feedback_does_not_matter(
     log: Store, clock: Clock, told: list[tuple[str, bool]], rng: Random
 ) -> None:
     """Also where beliefs fade: an answer counts from when its request was put."""
@@ -233,7 +233,7 @@ def test_late_feedback_comes_to_the_same_in_whatever_order_it_arrives(
 # --------------------------------------------------------------------- one thing at a time
 
 
-def test_a_void_response_says_why_and_counts_again_when_that_is_taken_back(store: Store) -> None:
+def test_a_void_response_has_a_reason_and_can_be_restored(store: Store) -> None:
     feedback = Feedback(store)
     seq = respond(store, "p", "warm", True)
     assert store.responses() == {("p", "warm"): (1, 0)}
@@ -245,7 +245,7 @@ def test_a_void_response_says_why_and_counts_again_when_that_is_taken_back(store
     assert [entry.counts for entry in feedback.history("p")] == [True]
 
 
-def test_an_answer_that_is_wrong_is_voided_and_given_again(store: Store) -> None:
+def test_a_wrong_answer_can_be_voided_and_replaced(store: Store) -> None:
     feedback = Feedback(store)
     seq = respond(store, "p", "warm", True)
     with pytest.raises(TangyError, match="has its answer already"):
@@ -259,7 +259,7 @@ def test_an_answer_that_is_wrong_is_voided_and_given_again(store: Store) -> None
         feedback.give("p", "warm", True, seq)
 
 
-def test_feedback_to_another_persons_or_another_strategys_request_is_refused(store: Store) -> None:
+def test_feedback_to_another_request_is_refused(store: Store) -> None:
     feedback = Feedback(store)
     seq = append_body(store, ResponseAwaited, {"game": "g"}, person="p", strategy="warm")
     with pytest.raises(TangyError, match="was put with warm, not with brisk"):
@@ -269,7 +269,7 @@ def test_feedback_to_another_persons_or_another_strategys_request_is_refused(sto
     assert store.responses() == {}
 
 
-def test_undo_goes_back_one_change_at_a_time_and_person_by_person(store: Store) -> None:
+def test_undo_reverts_one_change_of_a_person_at_a_time(store: Store) -> None:
     feedback = Feedback(store)
     feedback.switch("p", "warm", False, STRATEGIES)
     feedback.choose_method("q", FORGETFUL)
@@ -285,7 +285,7 @@ def test_undo_goes_back_one_change_at_a_time_and_person_by_person(store: Store) 
     assert feedback.last_change() is None
 
 
-def test_a_strategy_that_is_switched_off_is_never_chosen_and_one_always_stays(store: Store) -> None:
+def test_a_disabled_strategy_is_never_chosen_and_the_last_stays(store: Store) -> None:
     memory = PersonModels(store, STRATEGIES)
     feedback = memory.feedback
     for strategy in ("warm", "brisk"):
@@ -302,14 +302,14 @@ def test_a_strategy_that_is_switched_off_is_never_chosen_and_one_always_stays(st
     assert {persuasion.choose("p").strategy for _ in range(50)} == {"plain", "warm"}
 
 
-def test_of_an_activity_none_of_whose_strategies_is_on_all_can_be_used(store: Store) -> None:
+def test_all_strategies_are_used_if_none_is_enabled(store: Store) -> None:
     feedback = Feedback(store)
     feedback.switch("p", "warm", False, STRATEGIES)
     other = Persuasion(["p"], ("warm",), Random(1), memory=PersonModels(store, ("warm",)))
     assert other.choose("p").strategy == "warm"
 
 
-def test_a_method_of_ones_own_comes_before_the_activitys(store: Store) -> None:
+def test_the_method_of_a_person_overrides_that_of_the_activity(store: Store) -> None:
     memory = PersonModels(store, STRATEGIES, FORGETFUL)
     assert (memory.recall("p").chosen, memory.recall("p").own) == (FORGETFUL, False)
     memory.feedback.choose_method("p", PAPER)
@@ -321,7 +321,7 @@ def test_a_method_of_ones_own_comes_before_the_activitys(store: Store) -> None:
         memory.feedback.choose_method("p", None)
 
 
-def test_a_prior_from_earlier_people_leaves_out_what_is_void(store: Store) -> None:
+def test_a_prior_from_earlier_people_excludes_void_responses(store: Store) -> None:
     memory = PersonModels(store, STRATEGIES, PersuasionConfig(prior="people"))
     for person in ("a", "b", "c", "d"):
         for _ in range(5):
@@ -333,7 +333,7 @@ def test_a_prior_from_earlier_people_leaves_out_what_is_void(store: Store) -> No
     assert memory.recall("new").prior["warm"] == Beta()
 
 
-def test_days_pass_for_who_forgets_by_the_day(log: Store, clock: Clock) -> None:
+def test_daily_forgetting_follows_the_clock(log: Store, clock: Clock) -> None:
     person = next(fresh)
     memory = PersonModels(log, STRATEGIES, PersuasionConfig(forgetting=0.5, forgetting_per="day"))
     for _ in range(4):
@@ -346,7 +346,7 @@ def test_days_pass_for_who_forgets_by_the_day(log: Store, clock: Clock) -> None:
         assert (belief.complied, belief.trials) == (4, 4)
 
 
-def test_the_log_can_be_read_where_it_cannot_be_written(tmp_path: Path) -> None:
+def test_feedback_can_be_read_from_a_read_only_log(tmp_path: Path) -> None:
     with Store.open(tmp_path / "none", write=False) as nothing:
         assert Feedback(nothing).history("p") == []
         assert PersonModels(nothing, STRATEGIES).recall("p").beliefs["warm"] == Beta()

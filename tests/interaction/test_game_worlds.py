@@ -1,4 +1,4 @@
-"""What is believed of people is kept apart for simulated, bench and live games."""
+"""Posteriors of people are separate for simulated, bench and live games."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def believed(store: Store, world: GameWorld | None = None) -> tuple[float, float
     return belief.alpha, belief.beta
 
 
-def test_each_world_has_its_own_beliefs(tmp_path: Path) -> None:
+def test_each_world_has_its_own_posteriors(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "s", SIMULATED, 5, 1)
         game(store, "b", BENCH, 2)
@@ -53,7 +53,7 @@ def test_each_world_has_its_own_beliefs(tmp_path: Path) -> None:
         assert [believed(store, world) for world in PLAYED_WORLDS] == [(6, 2), (3, 1), (1, 4)]
 
 
-def test_staff_can_say_where_a_game_was_played(tmp_path: Path) -> None:
+def test_staff_can_set_the_world_of_a_game(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "a", None, 5, 1)
         game(store, "b", LIVE, 2)
@@ -66,7 +66,7 @@ def test_staff_can_say_where_a_game_was_played(tmp_path: Path) -> None:
         assert [believed(store, world) for world in PLAYED_WORLDS] == [(1, 1), (3, 1), (6, 2)]
 
 
-def test_the_world_of_the_last_game_is_shown_unless_another_is_asked_for(tmp_path: Path) -> None:
+def test_the_world_of_the_last_game_is_the_default(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         assert GameWorlds(store).last == SIMULATED
         game(store, "l", LIVE, 1)
@@ -76,7 +76,7 @@ def test_the_world_of_the_last_game_is_shown_unless_another_is_asked_for(tmp_pat
         assert believed(store) == (3, 1)
 
 
-def test_a_method_that_forgets_learns_from_its_own_world_alone(tmp_path: Path) -> None:
+def test_a_forgetting_method_uses_only_its_own_world(tmp_path: Path) -> None:
     forgetting = PersuasionConfig("thompson", "uniform", 0.9, "interaction")
     with Store.open(tmp_path) as store:
         game(store, "l", LIVE, 3)
@@ -85,7 +85,7 @@ def test_a_method_that_forgets_learns_from_its_own_world_alone(tmp_path: Path) -
         assert PersonModels(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs == before
 
 
-def test_what_worked_with_others_is_taken_from_the_same_world(tmp_path: Path) -> None:
+def test_the_prior_from_others_uses_only_the_same_world(tmp_path: Path) -> None:
     people = PersuasionConfig("thompson", "people")
     with Store.open(tmp_path) as store:
         game(store, "s", SIMULATED, 9)
@@ -94,7 +94,7 @@ def test_what_worked_with_others_is_taken_from_the_same_world(tmp_path: Path) ->
         assert PersonModels(store, STRATEGIES, people, world=LIVE).recall("q").prior == fresh
 
 
-def test_what_staff_saw_without_a_game_belongs_to_the_world_they_look_at(tmp_path: Path) -> None:
+def test_feedback_without_a_game_belongs_to_the_shown_world(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "s", SIMULATED, 1)
         PersonModels(store, STRATEGIES, world=LIVE).feedback.give("p", "praise", True)
@@ -105,7 +105,7 @@ def test_what_staff_saw_without_a_game_belongs_to_the_world_they_look_at(tmp_pat
         assert believed(store, SIMULATED) == (2, 2)
 
 
-def test_a_response_that_is_void_counts_in_no_world(tmp_path: Path) -> None:
+def test_a_void_response_counts_in_no_world(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "l", LIVE, 2)
         memory = PersonModels(store, STRATEGIES, world=LIVE)
@@ -114,7 +114,7 @@ def test_a_response_that_is_void_counts_in_no_world(tmp_path: Path) -> None:
         assert believed(store, SIMULATED) == (1, 1)
 
 
-def test_a_record_tells_of_one_world_with_the_numbers_of_the_whole_log(tmp_path: Path) -> None:
+def test_a_record_of_one_world_keeps_the_numbers_of_the_whole_log(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "s", SIMULATED, 2)
         game(store, "l", LIVE, 1)
@@ -136,7 +136,7 @@ def test_a_record_tells_of_one_world_with_the_numbers_of_the_whole_log(tmp_path:
         ([33.2, 33.4, 31.9], False, UNKNOWN),
     ],
 )
-def test_the_times_of_old_games_tell_only_what_they_can(
+def test_the_times_of_old_games_identify_only_simulated_ones(
     tmp_path: Path, calls: list[float], hurried: bool, world: GameWorld
 ) -> None:
     clock = [datetime(2026, 1, 1, tzinfo=UTC)]
@@ -154,7 +154,7 @@ def test_the_times_of_old_games_tell_only_what_they_can(
         assert believed(store, world) == (2, 1)
 
 
-def test_what_nobody_can_tell_counts_for_no_world_and_is_asked_about_once(tmp_path: Path) -> None:
+def test_a_game_of_unknown_world_counts_in_none_and_is_asked_about_once(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "old", None, 3)
         game(store, "older", None, 2)
@@ -168,14 +168,14 @@ def test_what_nobody_can_tell_counts_for_no_world_and_is_asked_about_once(tmp_pa
         assert believed(store, LIVE) == (4, 1)
 
 
-def test_the_newest_game_of_which_it_is_known_says_what_is_shown(tmp_path: Path) -> None:
+def test_the_newest_game_of_known_world_sets_the_default(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "l", LIVE, 1)
         game(store, "old", None, 4)
         assert GameWorlds(store).last == LIVE
 
 
-def test_an_unknown_world_is_refused_with_the_nearest_word() -> None:
+def test_an_unknown_world_is_refused_with_a_suggestion() -> None:
     assert read_game_world(" Live ") == LIVE
     with pytest.raises(TangyError, match="bench"):
         read_game_world("bnech")

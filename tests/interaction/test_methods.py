@@ -1,4 +1,4 @@
-"""Each way to choose and to learn keeps its law; the paper's stays exactly the paper's."""
+"""The laws of each method of persuasion; the default is exactly that of the paper."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def learn(method: Method, told: Sequence[tuple[str, bool]]) -> Beliefs:
 
 
 @given(responses, st.integers())
-def test_the_default_draws_from_beta_one_plus_counts_and_nothing_else(
+def test_the_default_method_draws_from_the_beta_posterior(
     told: list[tuple[str, bool]], seed: int
 ) -> None:
     method = method_of(PAPER)
@@ -89,7 +89,7 @@ def test_the_default_draws_from_beta_one_plus_counts_and_nothing_else(
 
 
 @given(methods, responses)
-def test_whatever_the_method_the_counts_are_those_of_the_responses(
+def test_counts_match_the_responses_for_any_method(
     method: Method, told: list[tuple[str, bool]]
 ) -> None:
     beliefs = learn(method, told)
@@ -102,7 +102,9 @@ def test_whatever_the_method_the_counts_are_those_of_the_responses(
 
 
 @given(methods, responses)
-def test_learning_changes_nothing_in_place(method: Method, told: list[tuple[str, bool]]) -> None:
+def test_learning_does_not_modify_its_arguments(
+    method: Method, told: list[tuple[str, bool]]
+) -> None:
     prior = method.prior(STRATEGIES)
     before = dict(prior)
     beliefs = method.updated(prior, prior, STRATEGIES[0], True)
@@ -120,7 +122,7 @@ def test_every_strategy_has_a_score_that_is_a_probability(
 
 
 @given(methods, responses, st.randoms(use_true_random=False))
-def test_without_forgetting_the_order_does_not_matter(
+def test_the_order_does_not_matter_without_forgetting(
     method: Method, told: list[tuple[str, bool]], rng: Random
 ) -> None:
     if method.forgets:
@@ -145,7 +147,7 @@ def test_bayes_ucb_scores_with_the_quantile_one_less_one_in_t_plus_one(
         assert score == pytest.approx(beliefs[strategy].quantile(1 - 1 / (t + 1)))
 
 
-def test_bayes_ucb_draws_nothing() -> None:
+def test_bayes_ucb_uses_no_random_numbers() -> None:
     rng = Random(4)
     before = rng.getstate()
     BayesUcb().scores(uniform_beliefs(STRATEGIES), rng)
@@ -156,7 +158,7 @@ def test_bayes_ucb_draws_nothing() -> None:
 
 
 @given(some_counts)
-def test_earlier_people_lend_at_most_four_responses_and_one_for_each_of_them(
+def test_the_prior_from_earlier_people_is_worth_at_most_four_responses(
     counts: list[tuple[int, int]],
 ) -> None:
     prior = lent(counts)
@@ -167,7 +169,7 @@ def test_earlier_people_lend_at_most_four_responses_and_one_for_each_of_them(
     assert prior.trials == 0
 
 
-def test_with_nobody_to_learn_from_everything_is_as_in_the_paper() -> None:
+def test_the_prior_without_earlier_people_is_uniform() -> None:
     assert lent([]) == Beta()
     for people in ([], [{"plain": (0, 0)}], [{"unheard of": (3, 1)}]):
         assert EarlierPeople(Thompson(), people).prior(STRATEGIES) == uniform_beliefs(STRATEGIES)
@@ -175,7 +177,7 @@ def test_with_nobody_to_learn_from_everything_is_as_in_the_paper() -> None:
 
 @examples(max_examples=30)
 @given(some_counts.filter(bool))
-def test_no_prior_that_may_be_lent_makes_the_counts_more_probable(
+def test_the_lent_prior_maximises_the_likelihood_of_the_counts(
     counts: list[tuple[int, int]],
 ) -> None:
     def likelihood(alpha: float, beta: float) -> float:
@@ -191,7 +193,7 @@ def test_no_prior_that_may_be_lent_makes_the_counts_more_probable(
     assert likelihood(prior.alpha, prior.beta) == pytest.approx(best, abs=1e-6)
 
 
-def test_what_worked_with_all_of_them_is_expected_of_the_next() -> None:
+def test_a_strategy_that_worked_with_everybody_has_a_high_prior() -> None:
     people = [{"warm": (9, 1), "plain": (1, 3)} for _ in range(12)]
     prior = EarlierPeople(BayesUcb(), people).prior(STRATEGIES)
     assert prior["warm"].mean > 0.7
@@ -200,14 +202,14 @@ def test_what_worked_with_all_of_them_is_expected_of_the_next() -> None:
     assert prior["warm"].alpha + prior["warm"].beta == 2 + MOST_LENT
 
 
-def test_four_responses_of_a_persons_own_outweigh_any_prior() -> None:
+def test_five_own_responses_outweigh_any_prior() -> None:
     prior = lent([(50, 0)] * 40)
     for _ in range(5):
         prior = prior.updated(False)
     assert prior.mean < 0.5
 
 
-def test_a_persons_own_responses_do_not_come_back_as_a_prior() -> None:
+def test_the_prior_excludes_the_persons_own_responses() -> None:
     counts = {("p", "warm"): (9, 0), ("q", "warm"): (1, 2), ("q", "plain"): (0, 1)}
     assert others(counts, "p") == [{"warm": (1, 2), "plain": (0, 1)}]
     assert others(counts, "q") == [{"warm": (9, 0)}]
@@ -217,7 +219,7 @@ def test_a_persons_own_responses_do_not_come_back_as_a_prior() -> None:
 
 
 @given(responses)
-def test_keeping_everything_is_not_forgetting(told: list[tuple[str, bool]]) -> None:
+def test_forgetting_with_factor_one_keeps_everything(told: list[tuple[str, bool]]) -> None:
     kept, plain = learn(Forgetting(Thompson(), 1.0), told), learn(Thompson(), told)
     for strategy in STRATEGIES:
         assert kept[strategy].alpha == pytest.approx(plain[strategy].alpha)
@@ -225,7 +227,7 @@ def test_keeping_everything_is_not_forgetting(told: list[tuple[str, bool]]) -> N
 
 
 @given(responses, st.floats(0.5, 0.99))
-def test_what_was_learnt_weighs_less_with_every_interaction_since(
+def test_responses_decay_with_each_later_interaction(
     told: list[tuple[str, bool]], keep: float
 ) -> None:
     beliefs = learn(Forgetting(Thompson(), keep), told)
@@ -239,9 +241,7 @@ def test_what_was_learnt_weighs_less_with_every_interaction_since(
 
 
 @given(st.floats(0, 500), st.floats(0, 500), st.floats(0.5, 0.99))
-def test_days_add_up_whether_or_not_somebody_looks_in_between(
-    one: float, other: float, keep: float
-) -> None:
+def test_decay_over_days_is_additive(one: float, other: float, keep: float) -> None:
     method = Forgetting(Thompson(), keep, daily=True)
     prior = method.prior(STRATEGIES)
     beliefs = learn(method, [("warm", True)] * 6 + [("warm", False)] * 2)
@@ -253,7 +253,7 @@ def test_days_add_up_whether_or_not_somebody_looks_in_between(
     assert (once.complied, once.trials) == (6, 8)
 
 
-def test_after_long_enough_only_the_prior_is_left() -> None:
+def test_long_decay_leaves_only_the_prior() -> None:
     people = [{"warm": (9, 1)} for _ in range(12)]
     method = Forgetting(EarlierPeople(Thompson(), people), 0.9, daily=True)
     prior = method.prior(STRATEGIES)
@@ -278,7 +278,7 @@ def test_the_regret_of_bayes_ucb_is_at_most_65_hundredths_of_thompsons() -> None
 
 
 @pytest.mark.slow
-def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
+def test_the_regret_with_a_prior_from_people_is_at_most_half_of_thompsons() -> None:
     thompson = regret(bench.thompson, bench.shared, 150)
     assert regret(bench.bayes_ucb_prior, bench.shared, 150, earlier=True) <= 0.5 * thompson
 
@@ -296,7 +296,7 @@ def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
         (".98", PersuasionConfig(forgetting=0.98)),
     ],
 )
-def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: PersuasionConfig) -> None:
+def test_a_method_is_read_from_words_in_any_order(words: str, chosen: PersuasionConfig) -> None:
     assert spoken_persuading(words.split()) == chosen
     assert decode(PersuasionConfig, json.loads(json.dumps(encode(chosen)))) == chosen
 
@@ -311,13 +311,13 @@ def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: Persuasion
         ("day", "'day' needs the share that is kept, for example 0.98."),
     ],
 )
-def test_other_words_are_refused_in_a_sentence(words: str, said: str) -> None:
+def test_other_words_are_refused_in_one_sentence(words: str, said: str) -> None:
     with pytest.raises(ProfileError) as refused:
         spoken_persuading(words.split())
     assert str(refused.value) == said
 
 
-def test_an_activity_may_choose_and_a_mistake_says_where() -> None:
+def test_an_activity_can_set_its_method() -> None:
     assert read_persuading(Table({}, "x.toml")) == PAPER
     table = {"method": "bayes-ucb", "prior": "people", "forgetting": 0.9, "forgetting_per": "day"}
     assert read_persuading(Table(table, "x.toml")) == PersuasionConfig(
@@ -329,7 +329,7 @@ def test_an_activity_may_choose_and_a_mistake_says_where() -> None:
         read_persuading(Table({"forgeting": 0.9}, "x.toml"))
 
 
-def test_each_method_can_be_made_and_has_words_for_people() -> None:
+def test_each_method_has_an_implementation_and_words() -> None:
     from tangy_tui.text import people
 
     assert set(people.METHODS) == set(METHODS)
@@ -339,6 +339,6 @@ def test_each_method_can_be_made_and_has_words_for_people() -> None:
     }
 
 
-def test_a_method_that_is_not_known_is_refused_and_not_taken_for_another() -> None:
+def test_an_unknown_method_is_refused() -> None:
     with pytest.raises(InvalidValue, match=r"has 'method' that is 'thomson' .did you mean"):
         decode(PersuasionConfig, {"method": "thomson"})

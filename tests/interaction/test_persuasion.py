@@ -38,7 +38,7 @@ def test_everybody_begins_with_beta_one_one() -> None:
     assert persuasion.beliefs == {p: dict.fromkeys(STRATEGIES, Beta(1, 1)) for p in ("a", "b")}
 
 
-def test_what_is_known_already_is_added_to_the_beginning() -> None:
+def test_known_counts_are_added_to_the_prior() -> None:
     counts = {("a", "praise"): (3, 1), ("a", "flattery"): (5, 5), ("stranger", "praise"): (9, 0)}
     persuasion = Persuasion(["a", "b"], STRATEGIES, Random(1), counts=counts)
     assert persuasion.beliefs["a"]["praise"] == Beta(4, 2)
@@ -48,7 +48,7 @@ def test_what_is_known_already_is_added_to_the_beginning() -> None:
 
 
 @given(st.lists(st.tuples(st.sampled_from("ab"), st.sampled_from(STRATEGIES), st.booleans())))
-def test_beliefs_are_one_plus_the_counts_whatever_the_order(
+def test_posteriors_are_one_plus_the_counts_in_any_order(
     responses: list[tuple[str, str, bool]],
 ) -> None:
     persuasion = Persuasion("ab", STRATEGIES, Random(1))
@@ -61,20 +61,20 @@ def test_beliefs_are_one_plus_the_counts_whatever_the_order(
     assert persuasion.beliefs == again.beliefs
 
 
-def test_one_persons_response_changes_only_that_belief() -> None:
+def test_a_response_changes_only_its_posterior() -> None:
     persuasion = Persuasion("ab", STRATEGIES, Random(1))
     persuasion.update(response("a", "praise", True))
     changed = {(p, s) for p in "ab" for s in STRATEGIES if persuasion.beliefs[p][s] != Beta(1, 1)}
     assert changed == {("a", "praise")}
 
 
-def test_a_response_that_was_followed_too_late_counts_as_not_complied() -> None:
+def test_a_late_response_counts_as_not_complied() -> None:
     persuasion = Persuasion("a", STRATEGIES, Random(1))
     assert persuasion.update(Response("a", "praise", True, False, 17.0)) == Beta(1, 2)
 
 
 @given(st.integers())
-def test_the_highest_draw_is_used_and_all_draws_are_told(seed: int) -> None:
+def test_the_strategy_with_the_highest_draw_is_used(seed: int) -> None:
     choice = Persuasion("a", STRATEGIES, Random(seed)).choose("a")
     assert choice.person == "a"
     assert tuple(choice.draws) == STRATEGIES
@@ -82,12 +82,12 @@ def test_the_highest_draw_is_used_and_all_draws_are_told(seed: int) -> None:
     assert all(0 <= draw <= 1 for draw in choice.draws.values())
 
 
-def test_the_same_seed_chooses_the_same() -> None:
+def test_choices_are_determined_by_the_seed() -> None:
     one, other = (Persuasion("a", STRATEGIES, Random(9)) for _ in range(2))
     assert [one.choose("a") for _ in range(20)] == [other.choose("a") for _ in range(20)]
 
 
-def test_a_strategy_is_chosen_as_often_as_it_is_probably_the_best() -> None:
+def test_a_strategy_is_chosen_with_its_probability_of_being_best() -> None:
     counts = {("a", "praise"): (6, 2), ("a", "neutral"): (3, 3), ("a", "scarcity"): (1, 4)}
     persuasion = Persuasion("a", STRATEGIES, Random(5), counts=counts)
     chosen = Counter(persuasion.choose("a").strategy for _ in range(6000))
@@ -96,7 +96,7 @@ def test_a_strategy_is_chosen_as_often_as_it_is_probably_the_best() -> None:
 
 
 @pytest.mark.parametrize("likes", STRATEGIES)
-def test_it_learns_which_strategy_a_person_prefers(likes: str) -> None:
+def test_persuasion_learns_the_preferred_strategy_of_a_person(likes: str) -> None:
     rng = Random(f"people/{likes}")
     late: Counter[str] = Counter()
     for seed in range(20):
@@ -105,7 +105,7 @@ def test_it_learns_which_strategy_a_person_prefers(likes: str) -> None:
     assert late[likes] / late.total() > 0.9
 
 
-def test_it_learns_different_things_of_different_people() -> None:
+def test_persuasion_learns_separately_for_each_person() -> None:
     rng = Random(3)
     persuasion = Persuasion("ab", STRATEGIES, Random(3))
     for _ in range(20):
@@ -116,7 +116,7 @@ def test_it_learns_different_things_of_different_people() -> None:
     assert best["b"]["scarcity"] > 0.9
 
 
-def test_regret_is_that_of_thompson_sampling() -> None:
+def test_the_regret_matches_thompson_sampling() -> None:
     """Mean regret at T = 60 with .9/.4: Thompson 6.2 (measured by simulation)."""
     rng, runs = Random(8), 300
     lost = 0
@@ -126,7 +126,7 @@ def test_regret_is_that_of_thompson_sampling() -> None:
     assert lost / runs * 0.5 == pytest.approx(6.2, rel=0.1)
 
 
-def test_another_way_to_choose_can_take_its_place() -> None:
+def test_another_method_can_be_used() -> None:
     class Last(Thompson):
         def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
             return {strategy: float(place) for place, strategy in enumerate(beliefs)}
@@ -135,12 +135,12 @@ def test_another_way_to_choose_can_take_its_place() -> None:
     assert persuasion.choose("a").strategy == "scarcity"
 
 
-def test_equal_scores_are_broken_by_chance() -> None:
+def test_ties_are_broken_at_random() -> None:
     persuasion = Persuasion("a", STRATEGIES, Random(1), method=BayesUcb())
     assert {persuasion.choose("a").strategy for _ in range(50)} == set(STRATEGIES)
 
 
-def test_a_choice_keeps_what_was_believed_when_it_was_made() -> None:
+def test_a_choice_keeps_the_posteriors_of_its_time() -> None:
     persuasion = Persuasion("a", STRATEGIES, Random(1))
     choice = persuasion.choose("a")
     persuasion.update(response("a", choice.strategy, True))

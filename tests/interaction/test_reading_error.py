@@ -1,4 +1,4 @@
-"""How often a look is wrong is learnt and kept, and says how many looks have to agree."""
+"""The error rate of looks is learnt and stored, and sets how many looks must agree."""
 
 from __future__ import annotations
 
@@ -26,9 +26,7 @@ from tangy_tui.world import World
     ("looks", "wrong", "needed"),
     [(0, 0, 4), (2000, 10, LEAST), (2000, 100, 4), (2000, 200, 5), (2000, 1900, MOST)],
 )
-def test_the_more_often_a_look_is_wrong_the_more_have_to_agree(
-    looks: int, wrong: int, needed: int
-) -> None:
+def test_a_higher_error_rate_needs_more_agreeing_looks(looks: int, wrong: int, needed: int) -> None:
     assert ReadingError(looks, wrong).needed == needed
 
 
@@ -38,7 +36,7 @@ def state(card: str) -> ActivityState:
 
 
 class Eyes:
-    """A world that is looked at: one look after another."""
+    """A world with a given series of looks."""
 
     def __init__(self, *looks: str) -> None:
         self.looks = [state(look) for look in looks]
@@ -47,7 +45,7 @@ class Eyes:
         return self.looks.pop(0)
 
 
-def test_single_looks_that_others_overrule_are_counted_as_wrong() -> None:
+def test_overruled_looks_count_as_wrong() -> None:
     eyes = Eyes("wrong", "right", "right", "right", "right")
     observation = Observation(cast(World, eyes))
     observation.after(lambda seen: seen != state("right"))
@@ -57,19 +55,19 @@ def test_single_looks_that_others_overrule_are_counted_as_wrong() -> None:
     assert observation.fused is None, "nothing contradicted this time"
 
 
-def test_what_is_believed_says_how_many_looks_agree() -> None:
+def test_a_fused_look_counts_its_agreeing_looks() -> None:
     observation = Observation(cast(World, Eyes("wrong", "right", "wrong", "wrong", "wrong")))
     observation.after(lambda seen: seen != state("right"))
     assert observation.fused is not None
     assert (observation.fused.agreeing, observation.fused.taken) == (4, 5)
 
 
-def test_a_diagnosis_says_how_sure_its_looks_are(workspace: Workspace) -> None:
+def test_a_diagnosis_includes_the_certainty_of_its_looks(workspace: Workspace) -> None:
     words = evidence_words({}, (), workspace.robot, (), FusedLook(4, 5, 0.005))
     assert "4 of 5" in words and "1 in 200" in words
 
 
-def test_the_error_is_kept_for_each_activity_and_world(workspace: Workspace) -> None:
+def test_the_error_rate_is_stored_for_each_activity_and_world(workspace: Workspace) -> None:
     store = workspace.store
 
     def play(game: str, activity: str, world: str, looks: int, wrong: int) -> None:

@@ -1,4 +1,4 @@
-"""The tally: what games added up to, in the document that `tangy play --json` prints."""
+"""The tally: totals of games in the document that `tangy play --json` prints."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_rows_come_in_the_given_order_with_instances_and_success(
     ]
 
 
-def test_the_document_has_just_the_keys_that_were_agreed(tally: Tally, activity: Activity) -> None:
+def test_the_document_has_exactly_the_agreed_keys(tally: Tally, activity: Activity) -> None:
     beliefs = {"a": {**uniform_beliefs(["praise", "neutral"]), "praise": Beta(3, 1)}, "b": {}}
     document = tally.to_json(activity.situations, beliefs)
     assert json.loads(json.dumps(document)) == document
@@ -75,7 +75,7 @@ def test_the_document_has_just_the_keys_that_were_agreed(tally: Tally, activity:
     assert document["faults"] == [{"reason": "Nobody knew."}]
 
 
-def test_no_games_add_up_to_nothing(activity: Activity) -> None:
+def test_an_empty_tally_has_zeros(activity: Activity) -> None:
     document = Tally().to_json(activity.situations, {})
     assert (document["games"], document["rows"], document["faults"]) == (0, [], [])
     assert document["interactions_per_user_game"] == 0

@@ -1,4 +1,4 @@
-"""Where it is not clear whom a behaviour is for, Tangy asks, learns the answer, and goes on."""
+"""If the addressee of a behaviour is unclear, Tangy asks, learns the answer, and continues."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def shown_alone(seed: int) -> Demonstration:
 
 
 @pytest.mark.slow
-def test_selectors_that_disagree_are_asked_about_once(tmp_path: Path) -> None:
+def test_disagreeing_selectors_are_asked_about_once(tmp_path: Path) -> None:
     shown = shown_alone(1)
     policy = learn_policy(ACTIVITY, [shown])
     assert policy.whom["repeat", REPEAT] == ("first asking", "whose turn")
