@@ -1,4 +1,4 @@
-"""The documents of both scenarios keep their contract, and their pages stand by themselves."""
+"""The documents of both scenarios have their agreed keys, and self-contained pages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def share(value: Any) -> bool:
     return isinstance(value, int | float) and 0 <= value <= 1
 
 
-def test_the_contract(ran: Ran) -> None:
+def test_the_document_has_its_agreed_keys(ran: Ran) -> None:
     document = ran.document
     if document["experiment"] == 1:
         assert document["seeds"] == 1
@@ -55,14 +55,14 @@ def test_the_contract(ran: Ran) -> None:
     assert document["paper"] == dict(published.SCENARIO_TWO)
 
 
-def test_a_document_says_what_it_was_made_from(ran: Ran) -> None:
+def test_a_document_records_its_versions_and_settings(ran: Ran) -> None:
     assert {"python", "tangy", "numpy", "scikit-learn"} <= set(ran.document["versions"])
     assert re.fullmatch("[0-9a-f]{64}", ran.document["code"])
     assert ran.document["settings"]["activity"] == "Bingo"
 
 
 @pytest.mark.slow
-def test_it_is_told_in_words_too(ran: Ran) -> None:
+def test_the_results_are_printed_in_words(ran: Ran) -> None:
     done = run(*ran.words)
     assert (done.returncode, done.stderr) == (0, "")
     rows = compare(ran.document)
@@ -73,7 +73,7 @@ def test_it_is_told_in_words_too(ran: Ran) -> None:
         )
 
 
-def test_a_page_is_well_formed_and_needs_nothing_else(ran: Ran) -> None:
+def test_a_page_is_well_formed_and_self_contained(ran: Ran) -> None:
     page = ran.page
     root = ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
     assert root.tag == "html"
@@ -91,7 +91,7 @@ def test_a_page_is_well_formed_and_needs_nothing_else(ran: Ran) -> None:
     parser.close()
 
 
-def test_a_page_names_no_place_on_this_machine(ran: Ran) -> None:
+def test_a_page_contains_no_local_path(ran: Ran) -> None:
     for place in (ran.folder, Path.home(), Path.cwd(), Path("/tmp")):  # noqa: S108
         assert str(place) not in ran.page
 
@@ -103,7 +103,7 @@ def test_figures_take_the_colours_of_the_page(ran: Ran) -> None:
         assert "#ffffff" not in svg
 
 
-def test_the_page_has_the_paper_beside_and_what_it_was_made_from(ran: Ran) -> None:
+def test_the_page_shows_the_papers_figures_and_the_versions(ran: Ran) -> None:
     text = "".join(ElementTree.fromstring(ran.page.partition("\n")[2]).itertext())  # noqa: S314
     for row in compare(ran.document):
         for words in (row.what, row.paper, row.here, row.words):
@@ -113,11 +113,11 @@ def test_the_page_has_the_paper_beside_and_what_it_was_made_from(ran: Ran) -> No
 
 
 @pytest.mark.slow
-def test_a_page_is_made_of_its_document_alone(ran: Ran) -> None:
+def test_a_page_depends_only_on_its_document(ran: Ran) -> None:
     assert report(ran.document) == ran.page
 
 
-def test_numbers_are_written_as_people_write_them() -> None:
+def test_percentages_are_formatted_for_readers() -> None:
     written = {0.02899: "2.9%", 0.9235: "92.3%", 0.2: "20%", 1: "100%", 0: "0%"}
     written |= {0.9996: ">99.9%", 0.0004: "<0.1%", 0.9989: "99.9%"}
     assert {share: percent(share) for share in written} == written
@@ -127,7 +127,7 @@ def test_numbers_are_written_as_people_write_them() -> None:
     assert (counted(1, "sequence"), counted(2000, "game")) == ("1 sequence", "2,000 games")
 
 
-def test_what_is_of_few_is_counted_and_right_decisions_asked_about_are_told(ran: Ran) -> None:
+def test_small_samples_are_given_as_counts(ran: Ran) -> None:
     if ran.document["experiment"] == 1:
         policies = compare(ran.document)[3].here
         assert policies.startswith("groups of 5 in which all are the same: 1 of 1; after exactly 3")
@@ -142,7 +142,7 @@ def test_what_is_of_few_is_counted_and_right_decisions_asked_about_are_told(ran:
         assert len(told) == 3, "what is gained is said of each method by its name"
 
 
-def test_only_what_was_predicted_is_said_to_agree(ran: Ran) -> None:
+def test_only_predictions_are_said_to_agree(ran: Ran) -> None:
     rows = compare(ran.document)
     assert {row.source for row in rows} > {"predicted", "fitted"}
     assert all(row.source == "predicted" for row in rows if "gree" in row.words)
@@ -150,7 +150,7 @@ def test_only_what_was_predicted_is_said_to_agree(ran: Ran) -> None:
         assert f">{row.source}</td>" in ran.page
 
 
-def test_what_was_chosen_stands_beside_other_choices(ran: Ran) -> None:
+def test_the_chosen_settings_are_shown_beside_alternatives(ran: Ran) -> None:
     if ran.document["experiment"] == 2:
         choices = ran.document["other_choices"]
         (used,) = (one for one in choices if one["used"])
@@ -163,7 +163,7 @@ def test_what_was_chosen_stands_beside_other_choices(ran: Ran) -> None:
 
 
 @pytest.mark.slow
-def test_neither_curve_hides_the_other_where_both_are_the_same(ran: Ran) -> None:
+def test_identical_curves_stay_visible(ran: Ran) -> None:
     if ran.document["experiment"] == 1:
         drawing = figures.mistakes(ran.document["teachers"]["with_mistakes"])
         assert drawing.count("stroke-width: 4") == 3 + 1, (
@@ -171,7 +171,7 @@ def test_neither_curve_hides_the_other_where_both_are_the_same(ran: Ran) -> None
         )
 
 
-def test_words_follow_the_numbers(ran: Ran) -> None:
+def test_the_words_follow_the_numbers(ran: Ran) -> None:
     if ran.document["experiment"] == 1:
         near = {**ran.document, "behaviours": {"mean": 61.0, "se": 1.0, "n": 9, "all": []}}
         far = {**near, "behaviours": {**near["behaviours"], "mean": 50.0}}

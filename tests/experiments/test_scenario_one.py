@@ -1,4 +1,4 @@
-"""Scenario 1: one guided game is enough, chance takes a few, teachers agree, mistakes are found."""
+"""Scenario 1: demonstrations needed, styles of teaching, and mistakes of teachers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_one_guided_demonstration_is_enough_for_one_to_eight_people(users: int) 
 
 
 @pytest.mark.slow
-def test_by_chance_it_takes_a_few_and_wrong_decisions_are_flagged_until_then() -> None:
+def test_random_games_need_a_few_demonstrations_and_flag_wrong_decisions() -> None:
     done = [incremental.until_exact(SETTINGS, (RANDOM, 4, 7000 + seed)) for seed in range(8)]
     games = [one["games"] for one in done]
     assert all(games)
@@ -44,7 +44,7 @@ def test_by_chance_it_takes_a_few_and_wrong_decisions_are_flagged_until_then() -
 
 
 @pytest.mark.slow
-def test_a_piece_comes_out_the_same_again() -> None:
+def test_a_repeated_run_gives_the_same_result() -> None:
     case = (RANDOM, 4, 7100)
     assert incremental.until_exact(SETTINGS, case) == incremental.until_exact(SETTINGS, case)
     taught_again = [teachers.teach(SETTINGS, (4, 7100)) for _ in range(2)]
@@ -53,7 +53,7 @@ def test_a_piece_comes_out_the_same_again() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("place", ["commonest", "rarest", "anywhere"])
-def test_wrong_answers_are_found_and_settled(place: str) -> None:
+def test_wrong_answers_are_found_and_resolved(place: str) -> None:
     for seed in range(3):
         done = mistakes.with_mistakes(SETTINGS, (0.03, place, 7200 + seed))
         assert done["wrong"] == round(0.03 * done["steps"])
@@ -68,7 +68,7 @@ def test_wrong_answers_are_found_and_settled(place: str) -> None:
         assert not done["silent"]
 
 
-def test_wrong_answers_are_put_where_they_are_said_to_be() -> None:
+def test_wrong_answers_are_placed_as_specified() -> None:
     activity = activity_of("bingo")
     shown = list(islice(taught(Course("bingo", 4, RANDOM, 7300)), 3))
     steps = {step.id: step for one in shown for step in one.steps}
@@ -86,7 +86,7 @@ def test_wrong_answers_are_put_where_they_are_said_to_be() -> None:
 # ---------------------------------------------------------------------------------- teachers
 
 
-def test_whom_teachers_go_to_first() -> None:
+def test_each_style_of_teaching_chooses_whom_to_visit_first() -> None:
     asking, rng = ("c", "a", "d"), Random(1)
     assert last_come(asking, SEATS, FRONT, rng) == "d"
     assert by_seat(asking, SEATS, FRONT, rng) == "a"
@@ -97,7 +97,7 @@ def test_whom_teachers_go_to_first() -> None:
 
 def test_no_two_parts_and_no_two_seeds_share_a_game(monkeypatch: pytest.MonkeyPatch) -> None:
     class Begun(Exception):
-        """A course that was begun, instead of being taught."""
+        """Raised instead of teaching a course."""
 
     def begin(course: Course, *_: object) -> None:
         raise Begun(course.seed)
@@ -118,7 +118,7 @@ def test_no_two_parts_and_no_two_seeds_share_a_game(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.slow
-def test_teachers_differ_in_what_they_do_and_not_in_what_is_learnt() -> None:
+def test_different_styles_of_teaching_give_the_same_policy() -> None:
     done = [teachers.teach(SETTINGS, (place, 7400)) for place in range(len(STYLES))]
     assert len({tuple(one["behaviours"]) for one in done}) == len(STYLES)
     assert {one["end"]["policy"] for one in done} == {done[0]["end"]["policy"]}
@@ -128,7 +128,7 @@ def test_teachers_differ_in_what_they_do_and_not_in_what_is_learnt() -> None:
     assert done[0]["mistakes"] == {"made": 0, "noticed": 0, "mended": 0, "kept": 0}
 
 
-def test_a_mistake_that_is_seen_leaves_no_trace() -> None:
+def test_a_noticed_mistake_leaves_no_trace() -> None:
     careful = replace(STYLES[1], mistakes=0.2, mends=1.0)
     made: list[StyledTeacher] = []
 
@@ -145,7 +145,7 @@ def test_a_mistake_that_is_seen_leaves_no_trace() -> None:
 # --------------------------------------------------------------------------------- estimates
 
 
-def test_estimates_say_how_sure_they_are() -> None:
+def test_estimates_include_their_uncertainty() -> None:
     assert summary([1, 2, 3]) == {"n": 3, "mean": 2, "sd": 1, "se": pytest.approx(3**-0.5)}
     assert summary([])["mean"] is None
     low, high = share_interval(0.95, 100)

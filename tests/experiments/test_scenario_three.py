@@ -1,4 +1,4 @@
-"""Scenario 3, simulated: what is induced, what is counted, and that nothing is counted by hand."""
+"""Scenario 3, simulated: induced faults, and figures counted from the log."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def fault(code: str, step: int) -> Fault:
     )  # fmt: skip
 
 
-def test_the_papers_table_is_whole() -> None:
+def test_the_table_of_the_paper_is_complete() -> None:
     table = published.SCENARIO_THREE
     assert sum(row["instances"] for row in table["rows"]) / table["games"] == 49.25
     assert PAPER == {"expert": 21, "continue": 40, "user": 6, "teacher": 20}
@@ -71,7 +71,7 @@ def test_other_numbers_of_games_have_the_same_proportions(games: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_plan_has_the_mix_spread_over_games_and_no_kind_twice_in_one(seed: int) -> None:
+def test_a_plan_spreads_the_mix_without_repeats_in_a_game(seed: int) -> None:
     plan = draw_plan(PAPER, 20, seed, BOOK)
     of = {name: recovery for recovery, kinds in kinds_by_recovery(BOOK).items() for name in kinds}
     assert Counter(of[one.kind.name] for game in plan for one in game) == PAPER
@@ -85,7 +85,7 @@ def test_a_plan_has_the_mix_spread_over_games_and_no_kind_twice_in_one(seed: int
     assert plan == draw_plan(PAPER, 20, seed, BOOK)
 
 
-def test_a_diagnosis_is_held_against_what_was_there_then() -> None:
+def test_a_diagnosis_is_compared_with_the_faults_present_then() -> None:
     stop = Induced(KINDS["emergency-stop"], 5, 0.0, lifted=5)
     arm = Induced(KINDS["arm-failed"], 9, 0.0)
     unseen = Induced(KINDS["request-withdrawn"], 20, 0.0)
@@ -103,7 +103,7 @@ def test_a_diagnosis_is_held_against_what_was_there_then() -> None:
     assert match_faults([stop, arm, unseen], told[:1]).missed == [arm]
 
 
-def test_the_contract(document: dict[str, Any]) -> None:
+def test_the_document_has_its_agreed_keys(document: dict[str, Any]) -> None:
     assert document["games"] == GAMES
     assert [(row["criticality"], row["recovery"]) for row in document["faults"]] == [
         ("critical", "expert"),
@@ -123,7 +123,7 @@ def test_the_contract(document: dict[str, Any]) -> None:
     assert {"python", "tangy"} <= set(document["versions"])
 
 
-def test_everything_induced_is_noticed_and_recovered_from(document: dict[str, Any]) -> None:
+def test_every_induced_fault_is_noticed_and_recovered(document: dict[str, Any]) -> None:
     assert (document["missed"], document["false_alarms"]) == (0, 0)
     assert [row["success"] for row in document["faults"]] == [1.0] * 4
     assert document["ended"] == {"to its end": GAMES}
@@ -132,7 +132,7 @@ def test_everything_induced_is_noticed_and_recovered_from(document: dict[str, An
 
 
 @pytest.mark.slow
-def test_success_is_not_what_is_hoped_for_but_what_was_diagnosed(
+def test_success_is_measured_by_the_diagnoses(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     blind = replace(BOOK, rules=tuple(r for r in BOOK.rules if r.code != "arm-failed"))
@@ -155,7 +155,7 @@ def test_success_is_not_what_is_hoped_for_but_what_was_diagnosed(
 
 
 @pytest.mark.slow
-def test_the_same_seed_gives_the_same_games_and_twenty_are_a_piece(
+def test_results_are_reproducible_and_stored_in_pieces(
     document: dict[str, Any], tmp_path: Path
 ) -> None:
     again = recovery(Recovering("bingo", 4, GAMES, 2), Where(folder=tmp_path, jobs=1))
@@ -167,7 +167,7 @@ def test_the_same_seed_gives_the_same_games_and_twenty_are_a_piece(
 
 
 @pytest.mark.slow
-def test_the_page_is_made_of_the_document_and_has_the_paper_beside(
+def test_the_page_shows_the_papers_figures_beside_the_document(
     document: dict[str, Any],
 ) -> None:
     page = report(document)
@@ -185,7 +185,7 @@ def test_the_page_is_made_of_the_document_and_has_the_paper_beside(
 
 
 @pytest.mark.slow
-def test_words_follow_the_numbers(document: dict[str, Any]) -> None:
+def test_the_words_follow_the_numbers(document: dict[str, Any]) -> None:
     row = {**document["faults"][0], "missed": 2, "again": 1, "escalated": 3}
     told = compare({**document, "faults": [row, *document["faults"][1:]]})[0].words
     assert "2 missed" in told and "1 of them diagnosed once more" in told
@@ -197,13 +197,13 @@ def test_words_follow_the_numbers(document: dict[str, Any]) -> None:
     assert "did not come about before its games ended: never-complies" in page
 
 
-def test_what_follows_from_chosen_help_is_no_prediction(document: dict[str, Any]) -> None:
+def test_figures_from_chosen_settings_are_no_predictions(document: dict[str, Any]) -> None:
     sources = [row.source for row in compare(document)]
     assert sources == ["chosen"] * 4 + ["predicted", "fitted", "chosen"]
 
 
 @pytest.mark.slow
-def test_the_page_says_whether_devices_were_there(document: dict[str, Any]) -> None:
+def test_the_page_says_whether_devices_were_simulated(document: dict[str, Any]) -> None:
     assert "in simulation" in report(document) and "proves the rules" in report(document)
     benched = {**document, "simulated": False}
     assert "on a bench of devices" in report(benched)
@@ -211,9 +211,7 @@ def test_the_page_says_whether_devices_were_there(document: dict[str, Any]) -> N
     assert "what they report is not" in " ".join(row.words for row in compare(benched))
 
 
-def test_games_with_something_wrong_are_kept_to_be_read(
-    document: dict[str, Any], tmp_path: Path
-) -> None:
+def test_games_with_errors_are_kept_for_review(document: dict[str, Any], tmp_path: Path) -> None:
     fine = next(game for game in document["each_game"] if not to_read(game))
     induced, diagnosed = fine["induced"][0], fine["faults"][0]
     missed = {**fine, "induced": [{**induced, "missed": True}]}

@@ -17,7 +17,7 @@ SEED = 31
 LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
 
 
-def test_the_first_run_of_ten_is_convergence() -> None:
+def test_the_first_ten_in_a_row_mean_convergence() -> None:
     count = persuading.suboptimal_before_convergence
     assert count([True] * 10) == 0
     assert count([False, True, False, *[True] * 10, False]) == 2
@@ -26,7 +26,7 @@ def test_the_first_run_of_ten_is_convergence() -> None:
 
 
 @pytest.mark.slow
-def test_suboptimal_strategies_before_convergence_are_the_papers() -> None:
+def test_suboptimal_strategies_before_convergence_match_the_paper() -> None:
     played = persuading.run("bingo", 4, 40, SEED, Where(jobs=1))
     before = played["suboptimal_before_convergence"]
     assert (before["n"], before["never"]) == (160, 0)
@@ -41,7 +41,7 @@ def test_suboptimal_strategies_before_convergence_are_the_papers() -> None:
 
 
 @pytest.mark.slow
-def test_other_choices_would_have_given_other_figures() -> None:
+def test_other_settings_give_other_figures() -> None:
     choices = other_choices.run("bingo", 60, SEED, Where(jobs=1))
     (used,) = (one for one in choices if one["used"])
     assert (used["preferred"], used["other"], used["in_a_row"]) == (0.9, 0.4, 10)
@@ -50,13 +50,13 @@ def test_other_choices_would_have_given_other_figures() -> None:
     assert used["mean"] == pytest.approx(10.8, abs=3)
 
 
-def test_a_group_comes_out_the_same_alone_and_among_others() -> None:
+def test_a_group_gives_the_same_result_alone_and_among_others() -> None:
     settings = {"activity": "bingo", "users": 3}
     together = persuading.play(settings, (SEED, 3))
     assert persuading.play(settings, (SEED + 1, 1)) == together[1:2]
 
 
-def test_where_nothing_persuades_it_is_said_before_any_game(
+def test_an_activity_without_persuasion_is_refused_before_any_game(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     mine = tmp_path / "mine.toml"
@@ -69,7 +69,7 @@ def test_where_nothing_persuades_it_is_said_before_any_game(
 
 
 @pytest.mark.slow
-def test_who_has_few_interactions_or_never_converges_is_told_of_as_such(
+def test_people_who_never_converge_are_counted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(persuading, "LONGEST", 4)
@@ -85,13 +85,13 @@ def test_who_has_few_interactions_or_never_converges_is_told_of_as_such(
     assert figures.before_convergence(document).startswith("<svg")
 
 
-def test_who_was_never_persuaded_ends_it_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_without_persuasion_ends_with_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(persuading, "LONGEST", 0)
     with pytest.raises(TangyError, match="was never persuaded in 0 games of Bingo"):
         persuading.run("bingo", 4, 1, SEED, Where(jobs=1))
 
 
-def test_everybody_answers_all_methods_alike() -> None:
+def test_every_method_gets_the_same_answers() -> None:
     crowd = algorithms.CROWDS["even"]
     runs = [
         algorithms.choices(crowd, method, 3, Random(chance), 4, SEED, 200)
@@ -107,7 +107,7 @@ def test_everybody_answers_all_methods_alike() -> None:
 
 
 @pytest.mark.slow
-def test_regrets_are_as_measured_and_bayes_ucb_is_better() -> None:
+def test_bayes_ucb_has_less_regret_than_thompson_sampling() -> None:
     def rows(name: str) -> list[list[float]]:
         return algorithms.meet({"strategies": 4, "seed": SEED}, ("even", name, 0, 120))
 
@@ -118,7 +118,7 @@ def test_regrets_are_as_measured_and_bayes_ucb_is_better() -> None:
 
 
 @pytest.mark.slow
-def test_earlier_people_help_where_people_are_alike_and_forgetting_where_they_change() -> None:
+def test_priors_help_for_similar_people_and_forgetting_for_changing_ones() -> None:
     settings = {"strategies": 4, "seed": SEED}
 
     def mean(crowd: str, name: str, column: int) -> float:
@@ -132,7 +132,7 @@ def test_earlier_people_help_where_people_are_alike_and_forgetting_where_they_ch
     )
 
 
-def test_earlier_people_are_others_and_always_the_same() -> None:
+def test_earlier_people_are_reproducible() -> None:
     met = algorithms.earlier_people("uneven", 4, SEED)
     assert len(met) == algorithms.EARLIER
     assert all(sum(map(sum, counts.values())) == algorithms.MET for counts in met)
@@ -140,7 +140,7 @@ def test_earlier_people_are_others_and_always_the_same() -> None:
     assert algorithms.earlier_people("uneven", 4, SEED) == met
 
 
-def test_the_log_term_of_lai_and_robbins() -> None:
+def test_the_lai_robbins_bound_is_computed() -> None:
     assert algorithms.lai_robbins(0.9, [0.4] * 3) == pytest.approx(1.998, abs=0.001)
     assert algorithms.lai_robbins(0.5, [0.5]) == 0
     assert algorithms.lai_robbins(0.5, [0.0]) == pytest.approx(0.5 / 0.6931, abs=0.001)

@@ -1,4 +1,4 @@
-"""A sweep comes out the same however it is worked at, and goes on after any interruption."""
+"""A sweep gives the same results with any number of jobs, and resumes after any interruption."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_results_come_in_the_order_of_the_cases_with_any_number_of_jobs(tmp_path
     assert sweep(seconds=0.005).run(Where(tmp_path, jobs=2)) == alone
 
 
-def test_what_is_done_is_told_and_not_done_again(tmp_path: Path) -> None:
+def test_finished_cases_are_reported_and_not_repeated(tmp_path: Path) -> None:
     told: list[tuple[str, int, int]] = []
     where = Where(tmp_path, jobs=1, tell=lambda *words: told.append(words))
     first = sweep().run(where)
@@ -61,7 +61,7 @@ def test_what_is_done_is_told_and_not_done_again(tmp_path: Path) -> None:
     assert the_file(tmp_path).read_bytes() == kept
 
 
-def test_more_cases_go_on_from_those_that_there_are(tmp_path: Path) -> None:
+def test_more_cases_reuse_the_finished_ones(tmp_path: Path) -> None:
     few = Sweep("drawing", draw, {"salt": 1, "seconds": 0}, CASES[:5])
     few.run(Where(tmp_path, jobs=1))
     told: list[int] = []
@@ -69,7 +69,7 @@ def test_more_cases_go_on_from_those_that_there_are(tmp_path: Path) -> None:
     assert told[0] == 5
 
 
-def test_other_settings_are_kept_apart_and_fresh_begins_again(tmp_path: Path) -> None:
+def test_other_settings_are_stored_apart_and_fresh_starts_over(tmp_path: Path) -> None:
     sweep(1).run(Where(tmp_path, jobs=1))
     sweep(2).run(Where(tmp_path, jobs=1))
     assert len(list((tmp_path / "experiments").iterdir())) == 2
@@ -79,7 +79,7 @@ def test_other_settings_are_kept_apart_and_fresh_begins_again(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("cut", [1, 7, 30])
-def test_a_torn_last_line_is_done_again_and_nothing_else(tmp_path: Path, cut: int) -> None:
+def test_only_a_torn_last_line_is_repeated(tmp_path: Path, cut: int) -> None:
     whole = sweep().run(Where(tmp_path, jobs=1))
     file = the_file(tmp_path)
     file.write_bytes(file.read_bytes()[:-cut])
@@ -94,7 +94,7 @@ def test_a_torn_last_line_is_done_again_and_nothing_else(tmp_path: Path, cut: in
 
 @pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_killed_at_any_moment_it_loses_only_what_was_being_done(tmp_path: Path, jobs: int) -> None:
+def test_a_killed_sweep_loses_only_running_cases(tmp_path: Path, jobs: int) -> None:
     rng = Random()  # another moment in every run; the law holds for all of them
     for _ in range(3):
         with subprocess.Popen(  # noqa: S603 - our own interpreter
@@ -115,7 +115,7 @@ def test_killed_at_any_moment_it_loses_only_what_was_being_done(tmp_path: Path, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("cores", [1, 2])
-def test_ctrl_c_ends_at_once_and_says_how_to_go_on(tmp_path: Path, cores: int) -> None:
+def test_ctrl_c_ends_at_once_and_explains_how_to_resume(tmp_path: Path, cores: int) -> None:
     tangy = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
     words = ["experiment", "1", "--seeds", "200", "--users", "4", "--no-typing"]
     words += ["--jobs", "-1" if cores == 1 else "2"]
@@ -146,12 +146,12 @@ def _kept(folder: Path) -> bool:
     return any(file.stat().st_size for file in folder.glob("experiments/*.jsonl"))
 
 
-def test_a_folder_that_is_made_is_for_its_owner_alone(tmp_path: Path) -> None:
+def test_a_new_folder_is_private(tmp_path: Path) -> None:
     sweep().run(Where(tmp_path / "new" / "data", jobs=1))
     assert (tmp_path / "new" / "data").stat().st_mode & 0o777 == 0o700
 
 
-def test_a_folder_that_cannot_be_used_is_said_in_a_sentence(tmp_path: Path) -> None:
+def test_an_unusable_folder_is_refused_in_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "experiments").write_text("a file", encoding="utf-8")
     with pytest.raises(TangyError, match="choose another --data"):
         sweep().run(Where(tmp_path, jobs=1))
@@ -171,7 +171,7 @@ def test_a_folder_that_cannot_be_used_is_said_in_a_sentence(tmp_path: Path) -> N
         (("--dask", "no address"), "no Dask scheduler answers there"),
     ],
 )
-def test_bad_input_is_one_sentence(
+def test_bad_input_is_refused_in_one_sentence(
     words: tuple[str, ...], said: str, tangy: Callable[..., subprocess.CompletedProcess[str]]
 ) -> None:
     begun = monotonic()

@@ -1,4 +1,4 @@
-"""What a program draws is read as a person reads it, however it arrives."""
+"""The screen model reads the output of a program in pieces of any size."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_text_stops_at_the_edges() -> None:
     assert screen.text == "\n"
 
 
-def test_the_shortest_phrase_leaves_no_doubt() -> None:
+def test_the_shortest_phrase_is_understood_with_certainty() -> None:
     activity = activity_of("bingo")
     phrasebook = Phrasebook(activity, ())
     for behaviour in activity.behaviours.values():
