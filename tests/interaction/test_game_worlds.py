@@ -136,7 +136,7 @@ def test_a_record_of_one_world_keeps_the_numbers_of_the_whole_log(tmp_path: Path
         ([33.2, 33.4, 31.9], False, UNKNOWN),
     ],
 )
-def test_the_times_of_old_games_identify_only_simulated_ones(
+def test_the_times_of_an_old_game_tell_its_world(
     tmp_path: Path, calls: list[float], hurried: bool, world: GameWorld
 ) -> None:
     clock = [datetime(2026, 1, 1, tzinfo=UTC)]

@@ -1,4 +1,4 @@
-"""`tangy activity`: what ships is well, and what is wrong with a file is told line by line."""
+"""`tangy activity`: shipped files are valid, and mistakes in a file are reported line by line."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def with_phrases(*phrases: tuple[str, str]) -> str:
 
 
 @pytest.mark.slow  # every activity is searched whole, as tests/profiles does one by one
-def test_everything_that_ships_is_well(tangy: Tangy) -> None:
+def test_every_shipped_file_passes_the_check(tangy: Tangy) -> None:
     done = tangy("activity", "check", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     document = json.loads(done.stdout)
@@ -79,7 +79,7 @@ def test_everything_that_ships_is_well(tangy: Tangy) -> None:
     assert not rules["evidence_without_rule"]
 
 
-def test_the_list_names_what_can_be_played(tangy: Tangy) -> None:
+def test_the_list_names_every_playable_activity(tangy: Tangy) -> None:
     listed = json.loads(tangy("activity", "list", "--json").stdout)
     bingo = next(one for one in listed if one["name"] == "bingo")
     assert (bingo["name"], len(bingo["behaviours"]), len(bingo["situations"])) == ("bingo", 11, 11)
@@ -88,13 +88,13 @@ def test_the_list_names_what_can_be_played(tangy: Tangy) -> None:
     assert json.loads(tangy("activity", "--json").stdout) == listed
 
 
-def test_an_activity_of_ones_own_is_checked_by_its_path(tangy: Tangy) -> None:
+def test_a_custom_activity_is_checked_by_its_path(tangy: Tangy) -> None:
     done = tangy("activity", "check", LANTERNS)
     assert (done.returncode, done.stderr) == (0, "")
     assert "lanterns.toml" in done.stdout
 
 
-def test_mistakes_are_a_line_each_and_the_status_says_so(tangy: Tangy, tmp_path: Path) -> None:
+def test_each_mistake_is_one_line_and_sets_the_exit_status(tangy: Tangy, tmp_path: Path) -> None:
     bad = tmp_path / "bad.toml"
     bad.write_text(SHIPPED.replace('posture = "', 'posture = "xx', 1), encoding="utf-8")
     rules = tmp_path / "rules.toml"
@@ -113,14 +113,14 @@ def test_mistakes_are_a_line_each_and_the_status_says_so(tangy: Tangy, tmp_path:
     assert [len(file["mistakes"]) for file in document["files"]] == [1, 2]
 
 
-def test_a_file_that_cannot_be_read_is_one_line(tangy: Tangy, tmp_path: Path) -> None:
+def test_an_unreadable_file_is_reported_in_one_line(tangy: Tangy, tmp_path: Path) -> None:
     (tmp_path / "x.toml").write_bytes(b"\xff\xfe")
     for given in (["none.toml"], [tmp_path / "x.toml"], [tmp_path], ["--faults", "none.toml"]):
         done = tangy("activity", "check", *given)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 
 
-def test_a_folder_and_an_empty_file_are_called_that(tangy: Tangy, tmp_path: Path) -> None:
+def test_folders_and_empty_files_are_reported(tangy: Tangy, tmp_path: Path) -> None:
     empty, folder = tmp_path / "empty.toml", tmp_path / "folder"
     empty.touch()
     folder.mkdir()
@@ -129,7 +129,7 @@ def test_a_folder_and_an_empty_file_are_called_that(tangy: Tangy, tmp_path: Path
         assert "folder: is a folder" in tangy("activity", "check", *option, folder).stderr
 
 
-def test_what_only_comes_of_two_kinds_together_can_be_brought_about(tangy: Tangy) -> None:
+def test_the_check_lists_rules_that_need_two_injected_faults(tangy: Tangy) -> None:
     rules = json.loads(tangy("activity", "check", RULES_FILE, "--json").stdout)["files"][-1]
     together = rules["only_by_kinds_together"]
     assert together == {"mute": ["voice-dead", "screen-dead"]}
@@ -152,16 +152,14 @@ def test_what_only_comes_of_two_kinds_together_can_be_brought_about(tangy: Tangy
         ),
     ],
 )
-def test_a_stage_that_can_never_be_reached_is_told(
-    tmp_path: Path, put: str, reason: str | None
-) -> None:
+def test_an_unreachable_stage_is_reported(tmp_path: Path, put: str, reason: str | None) -> None:
     *first, last = SHIPPED.split("[[stages]]")
     text = "[[stages]]".join([*first, f" \n{put}\n\n", last])
     found = [line for line in warnings(tmp_path, text) if "stages[nap]" in line]
     assert [reason in line for line in found if reason] == ([True] if reason else [])
 
 
-def test_what_stands_after_otherwise_is_never_reached(tmp_path: Path) -> None:
+def test_a_stage_after_otherwise_is_unreachable(tmp_path: Path) -> None:
     *first, last = SHIPPED.split("[[stages]]")
     put = '\nname = "nap"\nwhen = "otherwise"\n\n'
     found = warnings(tmp_path, "[[stages]]".join([*first, put, last]))
@@ -178,7 +176,7 @@ def colliding() -> str:
     return text[:begun] + 'question = "say two"' + text[text.index("\n", begun) :]
 
 
-def test_a_phrase_that_means_something_else_is_told(tmp_path: Path) -> None:
+def test_a_phrase_with_another_meaning_is_reported(tmp_path: Path) -> None:
     text = colliding().replace('"tell a joke", ', '"tell a joke", "say two", ', 1)
     found = mistakes(tmp_path, text)
     assert len(found) == 2
@@ -187,7 +185,7 @@ def test_a_phrase_that_means_something_else_is_told(tmp_path: Path) -> None:
     assert not warnings(tmp_path, SHIPPED)
 
 
-def test_ways_of_asking_that_may_press_people_are_told_where_none_is_named(tmp_path: Path) -> None:
+def test_possibly_pressing_strategies_are_reported_if_none_is_named(tmp_path: Path) -> None:
     (line,) = [line for line in SHIPPED.splitlines() if line.startswith("pressing_strategies")]
     guilt = SHIPPED.replace(line, "").replace("scarcity", "guilt")
     (told,) = warnings(tmp_path, guilt)
@@ -196,7 +194,7 @@ def test_ways_of_asking_that_may_press_people_are_told_where_none_is_named(tmp_p
     assert not warnings(tmp_path, SHIPPED.replace(line, "pressing_strategies = []"))
 
 
-def test_a_behaviour_that_nobody_can_ask_for_is_told(tmp_path: Path) -> None:
+def test_a_behaviour_without_a_usable_phrase_is_reported(tmp_path: Path) -> None:
     text = colliding()
     begun = text.rindex("phrases", 0, text.index('"tell us a joke"'))
     text = text[:begun] + 'phrases = ["say two"]' + text[text.index("]", begun) + 1 :]
@@ -241,7 +239,7 @@ def test_a_word_without_pronunciation_is_refused_with_the_line_to_add(tmp_path: 
         ),
     ],
 )
-def test_phrases_that_cannot_be_told_apart_are_refused_with_a_word_that_helps(
+def test_phrases_that_sound_alike_are_refused_with_a_suggestion(
     tmp_path: Path, phrases: tuple[tuple[str, str], ...], told: tuple[str, ...]
 ) -> None:
     (found,) = mistakes(tmp_path, with_phrases(*phrases))
@@ -263,7 +261,7 @@ def test_phrases_that_cannot_be_told_apart_are_refused_with_a_word_that_helps(
         ("no thank you", "is an answer to Tangy's questions"),
     ],
 )
-def test_a_phrase_that_stops_the_robot_or_answers_it_is_refused_with_another_word(
+def test_a_phrase_that_is_a_stop_or_an_answer_is_refused_with_a_suggestion(
     tmp_path: Path, phrase: str, why: str
 ) -> None:
     (found,) = mistakes(tmp_path, with_phrases(("tell a joke", phrase)))
@@ -272,16 +270,14 @@ def test_a_phrase_that_stops_the_robot_or_answers_it_is_refused_with_another_wor
     assert not mistakes(tmp_path, with_phrases(("tell a joke", f"{word} {phrase}")))
 
 
-def test_a_phrase_that_sounds_like_one_with_a_person_says_which(tmp_path: Path) -> None:
+def test_a_phrase_that_sounds_like_one_with_a_person_names_it(tmp_path: Path) -> None:
     (found,) = mistakes(tmp_path, with_phrases(("tell a joke", "go two user won")))
     assert ".phrases, with a person = 'go to user one': it sounds like " in found
     assert "behaviours[joke].phrases = 'go two user won'; " in found
 
 
 @pytest.mark.parametrize("near", ["lays it", "raises it", "aze it", "raise at"])
-def test_phrases_that_one_sound_tells_apart_are_a_warning_with_a_word_that_helps(
-    tmp_path: Path, near: str
-) -> None:
+def test_phrases_one_sound_apart_are_a_warning_with_a_suggestion(tmp_path: Path, near: str) -> None:
     phrases = ("tell a joke", "raise it"), ("remove markers", near)
     table = '[pronunciations]\naze = "EY Z"\nraises = "R EY Z IY"\nlays = "L EY Z"\n'
     text = with_phrases(*phrases).replace("[pronunciations]\n", table, 1)
@@ -293,14 +289,16 @@ def test_phrases_that_one_sound_tells_apart_are_a_warning_with_a_word_that_helps
     assert not any("one sound" in line for line in warnings(tmp_path, better))
 
 
-def test_phrases_of_one_behaviour_or_two_sounds_apart_are_no_warning(tmp_path: Path) -> None:
+def test_phrases_of_one_behaviour_or_two_sounds_apart_give_no_warning(tmp_path: Path) -> None:
     same = with_phrases(("tell a joke", "raise it"), ("tell a joke", "lays it"))
     assert not warnings(tmp_path, same)
     two = with_phrases(("tell a joke", "raise it"), ("remove markers", "lace it"))
     assert not warnings(tmp_path, two)
 
 
-def test_an_activity_with_such_phrases_is_refused_and_loads(tangy: Tangy, tmp_path: Path) -> None:
+def test_the_check_refuses_confusable_phrases_but_the_activity_loads(
+    tangy: Tangy, tmp_path: Path
+) -> None:
     path = tmp_path / "mine.toml"
     text = with_phrases(("tell a joke", "raise it"), ("remove markers", "raze it"))
     path.write_text(text, encoding="utf-8")
@@ -326,7 +324,7 @@ def test_an_activity_with_such_phrases_is_refused_and_loads(tangy: Tangy, tmp_pa
         (f'joke = "{"B " * 41}"', ("from 1 to 40 phones",)),
     ],
 )
-def test_a_pronunciation_that_is_none_is_one_line(
+def test_an_invalid_pronunciation_is_reported_in_one_line(
     tmp_path: Path, line: str, told: tuple[str, ...]
 ) -> None:
     table = "[pronunciations]\n"
@@ -337,7 +335,7 @@ def test_a_pronunciation_that_is_none_is_one_line(
         assert words in str(caught.value)
 
 
-def test_stress_and_case_of_phones_do_not_matter_and_unused_words_are_told(tmp_path: Path) -> None:
+def test_stress_and_case_of_phones_are_ignored_and_unused_words_reported(tmp_path: Path) -> None:
     table = "[pronunciations]\n"
     text = SHIPPED.replace(table, table + 'joke = ["jh OW1 k", "JH AO K"]\nzebra = "Z IY"\n', 1)
     (found,) = warnings(tmp_path, text)
@@ -346,7 +344,7 @@ def test_stress_and_case_of_phones_do_not_matter_and_unused_words_are_told(tmp_p
     assert activity.pronunciations["joke"] == ("JH OW K", "JH AO K")
 
 
-def test_rules_say_what_none_of_them_is_for(tmp_path: Path) -> None:
+def test_the_check_of_rules_lists_uncovered_symptoms(tmp_path: Path) -> None:
     path = tmp_path / "rules.toml"
     path.write_text(RULES, encoding="utf-8")
     rules = check_rules(load_robot(), path)

@@ -17,7 +17,7 @@ Tangy = Callable[..., CompletedProcess[str]]
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", each_of_first(DECLARED))
-def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
+def test_each_shipped_activity_is_taught_and_plays_100_games(
     name: str, tangy: Tangy, tmp_path: Path
 ) -> None:
     options = ("--activity", name, "--data", tmp_path)
@@ -49,9 +49,7 @@ def test_it_is_taught_by_demonstration_and_plays_100_games_to_their_end(
         "Good news\n\ny\nn\n",
     ],
 )
-def test_a_new_activity_is_sound_and_can_be_played_as_it_is_written(
-    answers: str, tangy: Tangy, tmp_path: Path
-) -> None:
+def test_a_new_activity_is_valid_and_playable(answers: str, tangy: Tangy, tmp_path: Path) -> None:
     made = tangy("activity", "new", tmp_path / "mine", stdin=answers)
     assert (made.returncode, made.stderr) == (0, "")
     (file,) = (tmp_path / "mine").glob("*.toml")
@@ -65,20 +63,20 @@ def test_a_new_activity_is_sound_and_can_be_played_as_it_is_written(
     assert json.loads(played.stdout)["finished"] == 20
 
 
-def test_an_author_who_answers_something_else_is_asked_again(tangy: Tangy, tmp_path: Path) -> None:
+def test_an_invalid_answer_of_the_author_is_asked_again(tangy: Tangy, tmp_path: Path) -> None:
     made = tangy("activity", "new", tmp_path, stdin="Bags\ny\n\nperhaps\nyes\nmaybe\ny\n")
     assert made.returncode == 0 and made.stdout.count("Please type y or n.") == 2
     assert "add score" in (tmp_path / "bags.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("said", ["poem", "a poem", "An old poem", "the poem", "a"])
-def test_an_author_may_name_what_a_round_brings_with_its_article(said: str) -> None:
+def test_the_article_of_an_item_is_removed(said: str) -> None:
     item = without_article(said)
     assert item in ("poem", "old poem", "a")
     assert f"The first {item}," in items_table(NewActivity("Poems", item, turns=True))
 
 
-def test_a_file_that_is_there_is_not_written_over(tangy: Tangy, tmp_path: Path) -> None:
+def test_an_existing_file_is_not_overwritten(tangy: Tangy, tmp_path: Path) -> None:
     (tmp_path / "poems.csv").write_text("mine", encoding="utf-8")
     made = tangy("activity", "new", tmp_path, stdin="Poems\npoem\nn\n")
     assert made.returncode == 2
@@ -86,7 +84,7 @@ def test_a_file_that_is_there_is_not_written_over(tangy: Tangy, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("words", [("drill",), ("cards", "list")])
-def test_what_needs_cards_says_so_of_an_activity_without(
+def test_commands_for_cards_refuse_an_activity_without_cards(
     words: tuple[str, ...], tangy: Tangy, tmp_path: Path
 ) -> None:
     data = () if words[0] == "cards" else ("--data", tmp_path)

@@ -1,4 +1,4 @@
-"""The floors hold, nothing heavy is imported early, and no word of an activity stands in code."""
+"""Import contracts, light imports, and code without words of any activity."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ SOURCES = [
 HEAVY = {"sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy"}
 
 
-def test_the_floors_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_import_contracts_hold(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     assert lint_imports(config_filename="pyproject.toml", cache_dir=None) == SUCCESS
 
 
-def test_the_contracts_are_those_of_the_house() -> None:
+def test_the_contracts_name_every_layer() -> None:
     contracts = read_configuration(str(ROOT / "pyproject.toml"))["contracts_options"]
     floors = next(c for c in contracts if c["type"] == "layers" and "containers" not in c)
     assert floors["layers"] == ["tangy_tui", "tangy_sim | tangy_hw", "tangy_profiles"]
@@ -94,7 +94,7 @@ def words_in_code(path: Path) -> Iterator[str]:
             yield node.attr
 
 
-def test_no_word_of_an_activity_stands_in_the_code(activity: Activity) -> None:
+def test_the_code_contains_no_word_of_an_activity(activity: Activity) -> None:
     words = {
         activity.name,
         *(set(activity.behaviours) - {"encourage"}),
@@ -153,7 +153,7 @@ def test_no_module_is_longer_than_400_lines() -> None:
     assert {name: lines for name, lines in long.items() if lines > 400} == {}
 
 
-def test_each_file_of_tests_has_a_name_of_its_own() -> None:
+def test_each_test_file_has_a_unique_name() -> None:
     # pytest imports them by name alone: of two that are called the same, one is not collected.
     names = sorted(path.name for path in (ROOT / "tests").rglob("test_*.py"))
     assert [name for name, after in pairwise(names) if name == after] == []

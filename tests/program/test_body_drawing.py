@@ -1,4 +1,4 @@
-"""A robot's body drawn from above: its proportions, and where its devices sit."""
+"""A robot's body drawn from above: its proportions, and the places of its devices."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def place(rows: list[str], sign: str) -> tuple[int, int]:
     return found
 
 
-def test_a_device_stands_where_it_sits_on_the_robot() -> None:
+def test_a_device_is_drawn_at_its_mount() -> None:
     eye = {"eye": Mount(0.1, -0.1, 1.3)}
     body = BodyProfile(radius=0.5, corners=CORNERS, laser=Mount(0.25, 0.0), cameras=eye)
     rows = drawn(body)
@@ -41,7 +41,7 @@ def test_a_round_robot_is_drawn_round_and_fits_on_a_terminal(radius: float) -> N
     assert widest == pytest.approx(2 * len(rows), abs=3)
 
 
-def test_a_robot_wider_than_long_is_drawn_so() -> None:
+def test_a_robot_wider_than_long_is_drawn_wide() -> None:
     wide = BodyProfile(radius=0.5, corners=((0.2, 0.4), (-0.2, 0.4), (-0.2, -0.4), (0.2, -0.4)))
     rows = drawn(wide)
     assert max(len(row.strip()) for row in rows) > 3 * len(rows)

@@ -1,4 +1,4 @@
-"""`tangy camera` and `tangy capture` on real files and streams, and what the machine has."""
+"""`tangy camera` and `tangy capture` on real files and streams, and the list of cameras."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def folder(tmp_path: Path) -> Path:
 
 class TestCamera:
     @pytest.mark.slow
-    def test_a_stream_that_works_is_told_so(self, tangy: Tangy, tmp_path: Path) -> None:
+    def test_a_working_stream_is_reported(self, tangy: Tangy, tmp_path: Path) -> None:
         with CameraServer() as server:
             picture = tmp_path / "last.png"
             done = tangy("camera", server.url, "--seconds", 2, "--json", "--picture", picture)
@@ -53,7 +53,7 @@ class TestCamera:
         assert cv2.imread(str(picture)) is not None
 
     @pytest.mark.slow
-    def test_one_that_is_covered_is_told_why_and_fails(self, tangy: Tangy) -> None:
+    def test_a_covered_camera_fails_with_the_reason(self, tangy: Tangy) -> None:
         with CameraServer() as server:
             server.mode = "covered"
             done = tangy("camera", server.url, "--seconds", 3)
@@ -61,17 +61,17 @@ class TestCamera:
         assert "covered: Nothing can be seen" in done.stdout
 
     @pytest.mark.slow
-    def test_one_that_is_not_there_fails(self, tangy: Tangy) -> None:
+    def test_a_missing_camera_fails(self, tangy: Tangy) -> None:
         done = tangy("camera", "/dev/video93", "--seconds", 2)
         assert done.returncode == 1
         assert "there is no such camera" in done.stdout
 
     @pytest.mark.parametrize("options", [("none.avi",), ("0", "--picture", "a.txt")])
-    def test_bad_input_is_refused_in_a_sentence(self, options: list[str], tangy: Tangy) -> None:
+    def test_bad_input_is_refused_in_one_sentence(self, options: list[str], tangy: Tangy) -> None:
         done = tangy("camera", *options)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
 
-    def test_a_file_that_is_no_video_is_refused_in_a_sentence(
+    def test_a_file_that_is_no_video_is_refused_in_one_sentence(
         self, tangy: Tangy, tmp_path: Path
     ) -> None:
         (tmp_path / "a.avi").write_bytes(b"no video")
@@ -82,7 +82,7 @@ class TestCamera:
 
 class TestCapture:
     @pytest.mark.slow
-    def test_every_picture_is_kept_with_what_was_seen(
+    def test_every_picture_is_stored_with_its_reading(
         self, tangy: Tangy, folder: Path, tmp_path: Path
     ) -> None:
         into = tmp_path / "set"
@@ -101,7 +101,7 @@ class TestCapture:
         assert (into / "000001.png").stat().st_mode & 0o077 == 0
 
     @pytest.mark.slow
-    def test_a_set_is_added_to_and_nothing_is_overwritten(
+    def test_a_set_is_extended_without_overwriting(
         self, tangy: Tangy, folder: Path, tmp_path: Path
     ) -> None:
         tangy("capture", tmp_path / "set", "--from", folder, "--count", 2)
@@ -111,7 +111,7 @@ class TestCapture:
         assert (tmp_path / "set" / "000001.png").read_bytes() == before
 
     @pytest.mark.slow
-    async def test_what_a_reader_says_is_kept_too(self, folder: Path, tmp_path: Path) -> None:
+    async def test_the_result_of_a_reader_is_stored(self, folder: Path, tmp_path: Path) -> None:
         def reader(image: Image) -> dict[str, int]:
             return {"height": int(image.shape[0])}
 
@@ -120,29 +120,27 @@ class TestCapture:
         assert [row["seen"] for row in rows] == [{"height": 120}] * 2
 
     @pytest.mark.slow
-    async def test_pictures_are_so_far_apart_as_asked(self, tmp_path: Path) -> None:
+    async def test_pictures_keep_the_given_interval(self, tmp_path: Path) -> None:
         with CameraServer() as server:
             async with Camera(find_camera(server.url)) as camera:
                 rows = [row async for row in capture(camera, tmp_path / "set", count=3, every=0.2)]
         stamps = [row["stamp"] for row in rows]
         assert all(later - sooner >= 0.199 for sooner, later in pairwise(stamps))
 
-    async def test_a_folder_that_cannot_be_used_is_an_error(
-        self, folder: Path, tmp_path: Path
-    ) -> None:
+    async def test_an_unusable_folder_is_an_error(self, folder: Path, tmp_path: Path) -> None:
         (tmp_path / "file").write_bytes(b"")
         async with Camera(find_camera(str(folder), each=True)) as camera:
             with pytest.raises(CameraError, match="cannot be used"):
                 async for _ in capture(camera, tmp_path / "file"):
                     pass
 
-    def test_without_a_picture_it_fails(self, tangy: Tangy, tmp_path: Path) -> None:
+    def test_a_capture_without_a_picture_fails(self, tangy: Tangy, tmp_path: Path) -> None:
         done = tangy("capture", tmp_path / "set", "--from", "/dev/video93", "--seconds", 0.2)
         assert done.returncode == 1
         assert done.stderr == "tangy: /dev/video93: no picture came.\n"
 
 
-def test_cameras_are_listed_as_the_system_has_them(tmp_path: Path) -> None:
+def test_cameras_are_listed_by_their_system_names(tmp_path: Path) -> None:
     devices = tmp_path / "dev"
     devices.mkdir()
     for name, index, title in (
@@ -161,7 +159,7 @@ def test_cameras_are_listed_as_the_system_has_them(tmp_path: Path) -> None:
 
 class TestSensors:
     @pytest.mark.slow
-    def test_each_device_has_its_line_and_a_camera_that_works_its_age(
+    def test_each_device_has_a_line_and_a_working_camera_its_age(
         self, tangy: Tangy, tmp_path: Path
     ) -> None:
         with CameraServer() as server:
@@ -173,7 +171,7 @@ class TestSensors:
         assert lines[-2:] == ["No card was read yet.", "Now: no card in sight."]
 
     @pytest.mark.slow
-    def test_one_that_does_not_work_fails_and_says_why(self, tangy: Tangy) -> None:
+    def test_a_failing_camera_gives_the_reason(self, tangy: Tangy) -> None:
         done = tangy("sensors", "--camera", "camera=/dev/video93", "--seconds", 2, "--json")
         told = json.loads(done.stdout)
         assert (done.returncode, done.stderr, told["works"]) == (1, "", False)
@@ -183,20 +181,18 @@ class TestSensors:
         assert devices["laser"]["simulated"] and devices["laser"]["works"] is None
         assert told["card"] == {"card": None, "problem": ""}
 
-    def test_without_a_camera_it_says_how_to_name_one(self, tangy: Tangy) -> None:
+    def test_a_missing_camera_option_is_explained(self, tangy: Tangy) -> None:
         done = tangy("sensors", "--seconds", 0.1)
         assert done.returncode == 0
         assert "tangy sensors --camera camera=0" in done.stdout
 
     @pytest.mark.parametrize("source", ["camra=0", "camera", "camera=none.avi"])
-    def test_a_source_that_is_none_is_refused_in_a_sentence(
-        self, source: str, tangy: Tangy
-    ) -> None:
+    def test_an_invalid_source_is_refused_in_one_sentence(self, source: str, tangy: Tangy) -> None:
         done = tangy("sensors", "--camera", source)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
 
     @pytest.mark.slow
-    def test_a_robot_of_ones_own_says_where_its_pictures_come_from(
+    def test_a_custom_robot_file_names_the_source_of_its_camera(
         self, tangy: Tangy, folder: Path, tmp_path: Path
     ) -> None:
         shipped = load_robot().file.read_text(encoding="utf-8")

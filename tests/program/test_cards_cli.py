@@ -17,9 +17,7 @@ from tangy_tui.pages.card_sheets import card_sheets
 Tangy = Callable[..., CompletedProcess[str]]
 
 
-def test_pictures_and_their_list_say_what_the_list_of_cards_says(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_pictures_and_their_list_match_the_list_of_cards(tangy: Tangy, tmp_path: Path) -> None:
     done = tangy("cards", "print", "--first", 17, "--count", 2, "--png", tmp_path, "--dpi", 60)
     assert done.returncode == 0, done.stderr
     listed = json.loads(tangy("cards", "list", "--first", 17, "--count", 2, "--json").stdout)
@@ -37,7 +35,7 @@ def test_pictures_and_their_list_say_what_the_list_of_cards_says(
         assert 0 < left < right < picture.shape[1] and 0 < top < bottom < picture.shape[0]
 
 
-def test_the_four_tags_of_a_picture_are_those_of_its_card(tangy: Tangy, tmp_path: Path) -> None:
+def test_the_four_tags_of_a_picture_encode_its_card(tangy: Tangy, tmp_path: Path) -> None:
     tangy("cards", "print", "--first", 249, "--count", 1, "--png", tmp_path, "--dpi", 60)
     picture = cv2.imread(str(tmp_path / "card-249.png"), cv2.IMREAD_GRAYSCALE)
     assert picture is not None
@@ -49,9 +47,7 @@ def test_the_four_tags_of_a_picture_are_those_of_its_card(tangy: Tangy, tmp_path
         assert abs(found[tag][0] / (60 / 25.4) - (place.left, place.top)).max() < 0.6  # mm
 
 
-def test_a_deck_is_another_with_another_seed_and_the_same_with_the_same(
-    activity: Activity, lanterns: Activity
-) -> None:
+def test_a_deck_is_determined_by_its_seed(activity: Activity, lanterns: Activity) -> None:
     assert numbers_of(activity.deck, 3) == numbers_of(activity.deck, 3, 1)
     assert numbers_of(activity.deck, 3, 2) != numbers_of(activity.deck, 3, 1)
     assert len({numbers_of(activity.deck, card) for card in range(1, 250)}) == 249
@@ -64,7 +60,7 @@ def test_a_deck_is_another_with_another_seed_and_the_same_with_the_same(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("paper", "sheets"), [("a4", 3), ("letter", 3), ("a5", 4)])
-def test_sheets_are_the_same_bytes_every_time(
+def test_card_sheets_are_reproducible(
     paper: str, sheets: int, lanterns: Activity, activity: Activity
 ) -> None:
     for played in (lanterns, activity):
@@ -83,7 +79,7 @@ def test_sheets_are_the_same_bytes_every_time(
         (["print", "--count", "0"], "--count"),
     ],
 )
-def test_what_cannot_be_printed_is_said_in_one_sentence(
+def test_an_impossible_print_is_refused_in_one_sentence(
     arguments: list[str], says: str, tangy: Tangy
 ) -> None:
     done = tangy("cards", *arguments)

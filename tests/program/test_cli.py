@@ -1,4 +1,4 @@
-"""The command line tells the whole story: taught, learnt and played, in words and as JSON."""
+"""The command line: teaching, learning and playing, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def document(done: CompletedProcess[str]) -> Any:
 
 
 @pytest.mark.slow
-def test_the_story_taught_learnt_and_played_for_300_games(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_taught_policy_plays_300_games(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "mine")
     assert tangy("teach", "--teacher", "scripted", "--games", 3, *data).returncode == 0
     assert tangy("learn", *data).returncode == 0
@@ -93,7 +93,7 @@ def test_the_same_seed_plays_the_same_games(tangy: Tangy, taught: Path, tmp_path
 
 
 @pytest.mark.slow
-def test_without_a_seed_no_two_runs_are_alike(tangy: Tangy, taught: Path) -> None:
+def test_runs_without_a_seed_differ(tangy: Tangy, taught: Path) -> None:
     for verb in (("play", "--games", 4), ("teach", "--teacher", "scripted")):
         told = [document(tangy(*verb, "--json", "--data", taught)) for _ in range(2)]
         said = [json.dumps(one.get("demonstrations") or one["rows"]) for one in told]
@@ -103,7 +103,7 @@ def test_without_a_seed_no_two_runs_are_alike(tangy: Tangy, taught: Path) -> Non
 
 
 @pytest.mark.slow
-def test_beliefs_grow_from_game_to_game(tangy: Tangy, taught: Path) -> None:
+def test_posteriors_grow_from_game_to_game(tangy: Tangy, taught: Path) -> None:
     trials = []
     for _ in range(2):
         played = document(tangy("play", "--games", 20, "--json", "--data", taught))
@@ -123,7 +123,7 @@ def test_one_to_eight_people_can_be_played_with(tangy: Tangy, taught: Path) -> N
 
 
 @pytest.mark.slow
-def test_the_papers_forest_is_a_setting(tangy: Tangy, taught: Path) -> None:
+def test_the_forest_of_the_paper_is_an_option(tangy: Tangy, taught: Path) -> None:
     learnt = document(tangy("learn", "--forest", "paper", "--json", "--data", taught))
     assert learnt["forest"]["bootstrap"] is True
     assert learnt["exact"]
@@ -133,7 +133,7 @@ def test_the_papers_forest_is_a_setting(tangy: Tangy, taught: Path) -> None:
 # -------------------------------------------------------------------------------- teaching
 
 
-def test_a_session_by_lines_is_left_and_resumed(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_session_by_lines_can_be_left_and_resumed(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "mine", "--teacher", "Ada", "--plain")
     first = tangy("teach", *data, stdin="greet everyone\ny\nnext number\ny\ntell a joke\nn\n")
     assert first.returncode == 0
@@ -209,7 +209,7 @@ def test_json_is_one_document_and_nothing_else(
         (("doctor",), "is sound"),
     ],
 )
-def test_in_words_every_verb_says_what_it_did(
+def test_every_verb_describes_its_result_in_words(
     arguments: tuple[str, ...], said: str, tangy: Tangy, taught: Path
 ) -> None:
     done = tangy(*arguments, "--data", taught)
@@ -243,7 +243,7 @@ def test_every_verb_has_help(verb: str, tangy: Tangy) -> None:
 
 
 @pytest.mark.slow
-def test_a_name_that_somebody_answers_to_is_not_given_again(tangy: Tangy, taught: Path) -> None:
+def test_a_used_name_is_refused(tangy: Tangy, taught: Path) -> None:
     tangy("people", "rename", "user1", "Rosa", "--data", taught)
     for taken, why in (("rosa", "is what user1 is called"), ("front", "is a place")):
         done = tangy("people", "rename", "user2", taken, "--data", taught)
@@ -253,7 +253,7 @@ def test_a_name_that_somebody_answers_to_is_not_given_again(tangy: Tangy, taught
 
 
 @pytest.mark.slow
-def test_a_new_name_is_used_everywhere_and_the_id_stays(tangy: Tangy, taught: Path) -> None:
+def test_a_new_name_is_used_everywhere_and_keeps_the_id(tangy: Tangy, taught: Path) -> None:
     tangy("people", "rename", "User 1", "Josè [/] {call}", "--data", taught)
     shown = document(tangy("people", "show", "Josè [/] {call}", "--json", "--data", taught))
     assert (shown["id"], shown["name"]) == ("user1", "Josè [/] {call}")

@@ -1,4 +1,4 @@
-"""What goes wrong on the command line: status 2 and one sentence on stderr, nothing lost."""
+"""Bad input on the command line: status 2, one sentence on stderr, and no lost data."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_bad_input_is_status_two_and_one_sentence(
 
 
 @pytest.mark.parametrize("verb", ["policy", "play"])
-def test_what_was_not_learnt_yet_cannot_be_shown_or_played(
+def test_an_unlearnt_policy_cannot_be_shown_or_played(
     verb: str, tangy: Tangy, tmp_path: Path
 ) -> None:
     done = tangy(verb, "--data", tmp_path / "empty")
@@ -74,7 +74,7 @@ def test_what_was_not_learnt_yet_cannot_be_shown_or_played(
     assert "`tangy teach`), then choose Learn (`tangy learn`)" in done.stderr
 
 
-def test_from_no_demonstration_nothing_is_learnt(tangy: Tangy, tmp_path: Path) -> None:
+def test_learning_without_demonstrations_is_refused(tangy: Tangy, tmp_path: Path) -> None:
     done = tangy("learn", "--data", tmp_path / "empty")
     assert (done.returncode, done.stdout) == (2, "")
     assert "demonstrate a game first" in done.stderr
@@ -94,7 +94,7 @@ def test_a_file_in_place_of_the_data_folder_is_refused(
 
 
 @pytest.mark.slow
-def test_a_second_writer_is_refused_and_readers_are_not(tangy: Tangy, taught: Path) -> None:
+def test_only_a_second_writer_is_refused(tangy: Tangy, taught: Path) -> None:
     with Store.open(taught):
         for verb in (
             ("teach", "--plain"),
@@ -112,7 +112,7 @@ def test_a_second_writer_is_refused_and_readers_are_not(tangy: Tangy, taught: Pa
     assert tangy("learn", "--data", taught).returncode == 0
 
 
-def test_without_data_the_platforms_folder_is_used(
+def test_the_default_data_folder_is_that_of_the_platform(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
@@ -124,7 +124,7 @@ def test_without_data_the_platforms_folder_is_used(
     ("words", "told"),
     [(("lisen",), "did you mean 'listen'"), (("qqq",), "choose one of: activity,")],
 )
-def test_a_command_that_does_not_exist_is_answered_with_the_nearest(
+def test_an_unknown_command_suggests_the_nearest_one(
     words: tuple[str, ...], told: str, tangy: Tangy
 ) -> None:
     done = tangy(*words)

@@ -1,4 +1,4 @@
-"""The command line of teaching, settling, explaining, comparing, and of games with questions."""
+"""The command line for teaching, conflicts, explanations, comparisons, and games with questions."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_guided_game_shows_every_situation(tangy: Tangy, tmp_path: Path) -> No
     assert learnt["conflicts"] == []
 
 
-def test_what_is_missing_is_said_in_words(tangy: Tangy, disagreeing: Path) -> None:
+def test_missing_situations_are_listed_in_words(tangy: Tangy, disagreeing: Path) -> None:
     done = tangy("learn", "--unfinished", "--data", disagreeing)
     assert "nobody has had a wrong mark yet" in done.stdout
     assert "Demonstrations disagree about 1 situation" in done.stdout
@@ -57,7 +57,7 @@ def test_what_is_missing_is_said_in_words(tangy: Tangy, disagreeing: Path) -> No
 
 
 @pytest.mark.slow
-def test_a_conflict_is_shown_settled_and_opened_again(tangy: Tangy, disagreeing: Path) -> None:
+def test_a_conflict_is_shown_resolved_and_reopened(tangy: Tangy, disagreeing: Path) -> None:
     at = ("--unfinished", "--data", disagreeing)
     (conflict,) = document(tangy("demonstrations", "conflicts", "--json", *at))
     assert conflict["situation"] == ["start", "ANR", "occluded"]
@@ -137,7 +137,7 @@ def test_policies_have_names_and_are_compared(tangy: Tangy, taught: Path) -> Non
     assert f"{found['different']} of 11 rows differ" in lines
 
 
-def test_why_is_told_by_number_by_words_and_as_a_document(tangy: Tangy, taught: Path) -> None:
+def test_why_accepts_numbers_and_words_and_prints_json(tangy: Tangy, taught: Path) -> None:
     at = ("--data", taught)
     words = tangy("policy", "--why", "wrong marks", *at).stdout
     assert "'ask to remove markers' was shown here" in words
@@ -162,9 +162,7 @@ def untaught(tangy: Tangy, disagreeing: Path) -> Path:
     return disagreeing
 
 
-def test_without_a_teacher_a_game_stops_where_tangy_is_not_sure(
-    tangy: Tangy, untaught: Path
-) -> None:
+def test_a_game_without_a_teacher_stops_at_an_unsure_decision(tangy: Tangy, untaught: Path) -> None:
     done = tangy("play", "--headless", "--json", "--seed", 3, "--data", untaught)
     assert done.returncode == 1, "the game did not come to its end"
     played = json.loads(done.stdout)
@@ -178,9 +176,7 @@ def test_without_a_teacher_a_game_stops_where_tangy_is_not_sure(
 
 
 @pytest.mark.slow
-def test_a_scripted_teacher_answers_and_then_nothing_is_asked_any_more(
-    tangy: Tangy, untaught: Path
-) -> None:
+def test_answers_of_a_scripted_teacher_end_the_questions(tangy: Tangy, untaught: Path) -> None:
     at = ("--headless", "--json", "--data", untaught)
     played = document(tangy("play", "--teacher", "scripted", "--games", 6, "--seed", 3, *at))
     assert played["faults"] == []
@@ -262,7 +258,7 @@ def test_a_script_for_the_scripted_teacher_is_refused(tangy: Tangy, tmp_path: Pa
 
 
 @pytest.mark.slow
-def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagreeing: Path) -> None:
+def test_learning_lists_changed_decisions(tangy: Tangy, disagreeing: Path) -> None:
     at = ("--data", disagreeing)
     told = refusal(tangy("learn", *at))
     assert "3 steps are kept" in told
@@ -278,7 +274,7 @@ def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagree
 
 
 @pytest.mark.slow
-def test_answers_by_script_are_told(tangy: Tangy, untaught: Path) -> None:
+def test_answers_of_a_scripted_teacher_are_printed(tangy: Tangy, untaught: Path) -> None:
     at = ("--headless", "--teacher", "scripted", "--seed", 3, "--data", untaught)
     told = tangy("play", *at).stdout
     assert "Learnt from scripted: the game has not begun -> greet everyone." in told
@@ -287,7 +283,7 @@ def test_answers_by_script_are_told(tangy: Tangy, untaught: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_policy_cannot_take_a_name_that_means_another(tangy: Tangy, taught: Path) -> None:
+def test_a_policy_cannot_take_a_reserved_name(tangy: Tangy, taught: Path) -> None:
     for name in ("last", "last~1", "teacher:Ada"):
         assert "choose another name" in refusal(tangy("learn", "--name", name, "--data", taught))
     document(tangy("demonstrations", "delete", "1", "--json", "--data", taught))
@@ -297,7 +293,7 @@ def test_a_policy_cannot_take_a_name_that_means_another(tangy: Tangy, taught: Pa
     assert document(tangy("learn", "--json", "--data", taught))["name"] == "bingo-2.2"
 
 
-def test_what_a_teacher_called_wrong_is_marked_in_the_demonstration(
+def test_a_step_resolved_as_wrong_is_marked_in_its_demonstration(
     tangy: Tangy, disagreeing: Path
 ) -> None:
     at = ("--data", disagreeing)
@@ -310,15 +306,13 @@ def test_what_a_teacher_called_wrong_is_marked_in_the_demonstration(
     assert [("called it wrong" in line) for line in lines] == [False, True, False]
 
 
-def test_words_that_fit_several_situations_are_told_apart(tangy: Tangy, taught: Path) -> None:
+def test_ambiguous_words_for_a_situation_are_refused(tangy: Tangy, taught: Path) -> None:
     told = refusal(tangy("policy", "--why", "nobody", "--data", taught))
     assert "fits several situations" in told
 
 
 @pytest.mark.slow
-def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
-    tangy: Tangy, disagreeing: Path
-) -> None:
+def test_the_comparison_of_teachers_ignores_resolutions(tangy: Tangy, disagreeing: Path) -> None:
     at = ("--data", disagreeing)
     settle = ("demonstrations", "resolve", "1", "--unfinished", "--both", "--json")
     document(tangy(*settle, *at))
@@ -331,7 +325,7 @@ def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
 
 
 @pytest.mark.slow
-def test_what_goes_wrong_is_told_in_one_document(tangy: Tangy, taught: Path) -> None:
+def test_faults_are_reported_in_one_document(tangy: Tangy, taught: Path) -> None:
     at = ("play", "--headless", "--seed", 3, "--data", taught)
     asked = ("--inject", "laser-disconnected@4", "--inject", "base-stuck@999")
     halted = tangy(*at, "--json", *asked)
@@ -366,9 +360,7 @@ def test_injections_are_listed_without_a_game(tangy: Tangy, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_a_policy_is_called_as_expected_only_where_it_asks_nothing(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_a_policy_that_asks_is_not_called_as_expected(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path)
     tangy("teach", "--plain", *data, stdin="greet everyone\ny\ncall number\ny\nquit\n")
     tangy("learn", "--unfinished", *data)

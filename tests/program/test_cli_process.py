@@ -1,4 +1,4 @@
-"""The command line as a process of its own: odd terminals, odd locales, pipes that close."""
+"""The command line as a separate process: odd terminals, odd locales, closed pipes."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_session_by_lines_runs_in_any_terminal_and_locale(
 
 
 @pytest.mark.slow
-def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> None:
+def test_undecodable_bytes_are_unknown_words(tmp_path: Path) -> None:
     done = tangy("teach", "--plain", home=tmp_path, typed=b"\xff\xfe\x80\x1b[2J\nquit\n")
     assert (done.returncode, done.stderr) == (0, b"")
     assert b"I do not know what" in done.stdout
@@ -65,14 +65,14 @@ def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_without_a_terminal_the_program_says_what_it_can_do(tmp_path: Path) -> None:
+def test_the_program_without_a_terminal_lists_its_commands(tmp_path: Path) -> None:
     done = tangy(home=tmp_path)
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.startswith(b"No screens here")
 
 
 @pytest.mark.slow
-def test_the_demonstration_of_everything_is_one_json_document(tmp_path: Path) -> None:
+def test_the_demo_prints_one_json_document(tmp_path: Path) -> None:
     done = tangy("demo", "--json", home=tmp_path, TERM="dumb", LANG="C")
     assert (done.returncode, done.stderr) == (0, b"")
     assert json.loads(done.stdout)["games"] == 1
@@ -80,7 +80,7 @@ def test_the_demonstration_of_everything_is_one_json_document(tmp_path: Path) ->
 
 
 @pytest.mark.slow
-def test_whoever_has_read_enough_is_no_error(tmp_path: Path) -> None:
+def test_a_reader_that_closes_early_is_no_error(tmp_path: Path) -> None:
     with subprocess.Popen(  # noqa: S603 - our own interpreter
         [*TANGY, "demo", "--plain", "--data", str(tmp_path / "data")],
         stdout=subprocess.PIPE,
@@ -109,7 +109,7 @@ def greeting(data: list[str], until: bytes) -> Iterator[subprocess.Popen[bytes]]
 
 
 @pytest.mark.slow
-def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) -> None:
+def test_a_killed_writer_releases_the_folder(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
     with greeting(data, b"Tangy says") as taught:
         busy = tangy("teach", "--plain", *data, home=tmp_path)
@@ -123,7 +123,7 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
 
 
 @pytest.mark.slow
-def test_ctrl_c_leaves_a_session_by_lines_at_once_and_keeps_its_steps(tmp_path: Path) -> None:
+def test_ctrl_c_ends_a_session_by_lines_and_keeps_its_steps(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
     with greeting(data, b"Now: Nobody asks") as taught:
         sleep(0.5)  # until the next line is waited for

@@ -1,4 +1,4 @@
-"""The demo is made of true runs: what it shows is in the log, the policy and the game behind it."""
+"""The demo consists of real runs: its frames match the log, the policy and the game."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def frames_of(caption: str) -> list[StoryFrame]:
     return [frame for frame in told()[0] if frame.caption == caption]
 
 
-def test_a_question_stands_before_what_it_asks_about_happens() -> None:
+def test_a_question_is_shown_before_its_behaviour() -> None:
     (asked,) = frames_of(text.IT_ASKS)
     assert asked.asked
     assert not asked.lines
@@ -47,7 +47,7 @@ def test_a_question_stands_before_what_it_asks_about_happens() -> None:
     assert asked.asked in done.lines[0]
 
 
-def test_a_mistake_is_noticed_taken_back_and_not_learnt() -> None:
+def test_a_mistake_is_noticed_undone_and_not_learnt() -> None:
     slip = frames_of(text.SLIP)[-1]
     (noticed,) = frames_of(text.NOTICED)
     (back,) = frames_of(text.TAKEN_BACK)
@@ -60,7 +60,7 @@ def test_a_mistake_is_noticed_taken_back_and_not_learnt() -> None:
     assert f"(User {kept[number].removeprefix('user')})" not in wrong
 
 
-def test_somebody_says_no_and_is_asked_in_another_way() -> None:
+def test_a_person_who_refuses_is_asked_in_another_way() -> None:
     (worked,) = [f for f in told()[0] if f.caption.startswith("That worked.")]
     assert worked.scene == 4
     before = [f.caption for f in told()[0][: told()[0].index(worked)] if f.scene == 4]
@@ -69,13 +69,13 @@ def test_somebody_says_no_and_is_asked_in_another_way() -> None:
     )
 
 
-def test_a_real_fault_is_diagnosed_and_recovered_from() -> None:
+def test_a_simulated_fault_is_diagnosed_and_recovered() -> None:
     assert len(told()[1]) == 1
     kinds = [text.NOW_A_FAULT, text.DIAGNOSED, text.ASKS_PEOPLE, text.RECOVERED]
     assert [len(frames_of(caption)) for caption in kinds] == [1, 1, 1, 1]
 
 
-def test_it_is_told_at_reading_pace() -> None:
+def test_the_demo_runs_at_reading_pace() -> None:
     seconds = sum(frame.seconds for frame in told()[0])
     assert MINUTES[0] * 60 < seconds < MINUTES[1] * 60
     captions = {frame.caption: frame.seconds for frame in reversed(told()[0])}
@@ -89,14 +89,14 @@ def test_captions_fit_the_two_lines_of_a_small_screen() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("activity", ["exercises", "memory", "trivia"])
-def test_other_activities_have_their_story(tmp_path: Path, activity: str) -> None:
+def test_other_activities_have_a_demo(tmp_path: Path, activity: str) -> None:
     with closing(Workspace(tmp_path, activity=activity)) as workspace:
         scenes = [frame.scene for frame in Story(workspace, 1).frames()]
     assert scenes == sorted(scenes)
     assert {1, 2, 3, 4, 6} <= set(scenes)
 
 
-def test_by_lines_each_scene_and_caption_is_told_once(tmp_path: Path) -> None:
+def test_the_demo_by_lines_prints_each_scene_and_caption_once(tmp_path: Path) -> None:
     said: list[str] = []
     with closing(Workspace(tmp_path)) as workspace:
         tally = tell(workspace, 1, said.append)

@@ -1,4 +1,4 @@
-"""What README, docs and CONTRIBUTING show: links lead somewhere, and commands are the program's."""
+"""README, docs and CONTRIBUTING: every link has a target, and every shown command exists."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def anchors(page: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_somewhere(page: Path) -> None:
+def test_every_link_has_a_target(page: Path) -> None:
     for link in LINK.findall(page.read_text(encoding="utf-8")):
         if re.match(r"\w+:", link):
             continue
@@ -73,7 +73,7 @@ def refused(words: list[str]) -> str:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_command_that_is_shown_is_one_of_the_programs(page: Path) -> None:
+def test_every_shown_command_exists(page: Path) -> None:
     wrong = {" ".join(words): bad for words in commands(page) if (bad := refused(words))}
     assert not wrong
 
@@ -102,7 +102,7 @@ HERE = {str(path.relative_to(HOUSE)) for path in HOUSE.rglob("*.*") if ".venv" n
 
 
 @pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
-def test_the_files_that_builders_are_sent_to_exist(page: str) -> None:
+def test_every_file_named_for_contributors_exists(page: str) -> None:
     text = (HOUSE / page).read_text(encoding="utf-8")
     named = set(MODULE.findall(text)) - {"lotto.toml"}  # of a package of others
     assert named

@@ -1,4 +1,4 @@
-"""Public docstrings say in which unit a float is, and of which shape or kind an array."""
+"""Public docstrings state the unit of each float, and the shape or kind of each array."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ def missing(word: str, says: re.Pattern[str]) -> list[str]:
     return found
 
 
-def test_a_public_function_that_takes_or_returns_a_float_says_in_which_unit() -> None:
+def test_public_functions_state_the_unit_of_their_floats() -> None:
     assert missing("float", UNIT) == []
 
 
-def test_a_public_function_that_takes_or_returns_an_array_says_of_which_shape() -> None:
+def test_public_functions_state_the_shape_of_their_arrays() -> None:
     assert missing("NDArray|Floats", SHAPE) == []

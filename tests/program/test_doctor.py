@@ -1,4 +1,4 @@
-"""What is said of the parts of a machine: those that work, are missing, or are broken."""
+"""`tangy doctor`: the parts of a machine that work, are missing, or are broken."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def data_folder(folder: Path) -> Finding:
     return next(f for f in examine(folder, lambda _: None) if f.part == "data folder")
 
 
-def test_a_program_that_is_not_installed_is_missing_and_not_broken(tmp_path: Path) -> None:
+def test_an_uninstalled_program_is_missing_and_not_broken(tmp_path: Path) -> None:
     states = {f.part: f.state for f in examine(tmp_path, lambda _: None)}
     parts = ("voice", "sound output", "microphone")
     assert {states[part] for part in parts} == {"missing"}
 
 
-def test_a_voice_is_tried_and_not_only_found(tmp_path: Path) -> None:
+def test_the_voice_is_tested_and_not_only_found(tmp_path: Path) -> None:
     speaker = Speaker(tmp_path / "speaker")
 
     def voice() -> Finding:
@@ -79,12 +79,12 @@ def test_a_recorder_is_no_microphone(tmp_path: Path, does: str, state: str, says
     assert (found.state, says in found.text) == (state, True), found.text
 
 
-def test_a_recorder_that_does_not_start_is_broken(tmp_path: Path) -> None:
+def test_a_recorder_that_cannot_start_is_broken(tmp_path: Path) -> None:
     with pytest.raises(SoundError, match="install alsa-utils anew"):
         list_microphones(str(tmp_path / "none"))
 
 
-def test_a_user_who_may_not_use_the_sound_cards_is_told(
+def test_missing_access_to_the_sound_cards_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "controlC0").touch()
@@ -93,7 +93,7 @@ def test_a_user_who_may_not_use_the_sound_cards_is_told(
         list_microphones("arecord", tmp_path)
 
 
-def test_a_folder_that_is_sound_or_can_be_made_is_ok(tmp_path: Path) -> None:
+def test_a_valid_or_new_data_folder_is_ok(tmp_path: Path) -> None:
     Store.open(tmp_path).close()
     assert data_folder(tmp_path) == Finding("data folder", True, f"{tmp_path} is sound.")
     new = tmp_path / "a" / "b"
@@ -103,7 +103,7 @@ def test_a_folder_that_is_sound_or_can_be_made_is_ok(tmp_path: Path) -> None:
     assert not new.exists(), "looking makes nothing"
 
 
-def test_a_log_of_an_older_tangy_is_ok(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_log_of_an_older_version_is_ok(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         Store.open(tmp_path).close()
@@ -120,7 +120,7 @@ def test_a_damaged_log_is_broken(tmp_path: Path) -> None:
     assert "tangy.db" in found.text
 
 
-def test_what_is_no_folder_is_broken(tmp_path: Path) -> None:
+def test_a_data_folder_that_is_no_folder_is_broken(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.touch()
     for path, why in ((file, "is no folder"), (file / "in" / "it", "cannot be made, for ")):
@@ -130,7 +130,7 @@ def test_what_is_no_folder_is_broken(tmp_path: Path) -> None:
         assert found.text.endswith("choose another folder with --data.")
 
 
-def test_a_folder_that_may_not_be_written_to_is_broken(
+def test_an_unwritable_data_folder_is_broken(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != tmp_path)
@@ -141,7 +141,7 @@ def test_a_folder_that_may_not_be_written_to_is_broken(
     assert not (tmp_path / "new").exists()
 
 
-def test_a_folder_that_may_not_be_looked_into_is_broken(
+def test_an_unreadable_data_folder_is_broken(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     exists = Path.exists
@@ -156,7 +156,7 @@ def test_a_folder_that_may_not_be_looked_into_is_broken(
     assert data_folder(tmp_path / "new").state == "broken"
 
 
-def test_a_robots_devices_are_tried_and_what_nothing_drives_is_missing(tmp_path: Path) -> None:
+def test_the_devices_of_a_robot_are_tested_and_undriven_ones_missing(tmp_path: Path) -> None:
     robot = tmp_path / "mine.toml"
     driver = 'laser = { kind = "scip", at = "/dev/no-such-port" }'
     shipped = load_robot().file.read_text(encoding="utf-8")
@@ -171,7 +171,7 @@ def test_a_robots_devices_are_tried_and_what_nothing_drives_is_missing(tmp_path:
 
 
 @pytest.mark.slow
-def test_the_code_of_the_chest_screen_is_told_and_stays_the_same(tmp_path: Path) -> None:
+def test_the_code_of_the_chest_screen_is_shown_and_constant(tmp_path: Path) -> None:
     file, folder = tmp_path / "mine.toml", tmp_path / "data"
     shipped = load_robot().file.read_text(encoding="utf-8")
     file.write_text(f'{shipped}\n[drivers]\nscreen = {{ kind = "page", port = 0 }}\n')
@@ -188,7 +188,7 @@ def test_the_code_of_the_chest_screen_is_told_and_stays_the_same(tmp_path: Path)
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
 
-def test_what_was_asked_for_and_is_broken_is_the_exit_status(
+def test_a_requested_broken_part_sets_the_exit_status(
     tangy: Callable[..., CompletedProcess[str]], tmp_path: Path
 ) -> None:
     data = ("--data", tmp_path / "data")

@@ -1,4 +1,4 @@
-"""`tangy drill` on the command line: by lines, as a document, and the scores that were kept."""
+"""`tangy drill` on the command line: by lines, as a document, and the stored scores."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def answers(rounds: int) -> str:
 
 
 @pytest.mark.slow
-def test_by_lines_a_drill_is_told_and_kept(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_drill_by_lines_is_played_and_stored(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "d")
     asked = ("drill", "--plain", "--rounds", "4", "--seed", "3", "--who", "Ada")
     done = tangy(*asked, *data, stdin=answers(8))
@@ -53,7 +53,7 @@ def test_by_lines_a_drill_is_told_and_kept(tangy: Tangy, tmp_path: Path) -> None
         assert store.responses() == {}
 
 
-def test_an_interrupted_drill_goes_on_or_is_kept(tangy: Tangy, tmp_path: Path) -> None:
+def test_an_interrupted_drill_is_resumed_or_stored(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "d", "--who", "Ada")
     right = AnsweredRound(1, "", "Nothing was wrong", "continue", (), "", "continue", 2.0)
     sheet = Sheet("Ada", "bingo", 3, 2, (right,))
@@ -81,7 +81,7 @@ def test_an_interrupted_drill_goes_on_or_is_kept(tangy: Tangy, tmp_path: Path) -
     ]
 
 
-def test_as_a_document_nothing_else_is_printed(tangy: Tangy, tmp_path: Path) -> None:
+def test_json_output_contains_only_the_document(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "d")
     done = tangy("drill", "--json", "--rounds", "2", "--seed", "1", *data, stdin=KEYS)
     assert done.returncode == 0, done.stderr
@@ -98,9 +98,7 @@ def test_as_a_document_nothing_else_is_printed(tangy: Tangy, tmp_path: Path) -> 
     assert json.loads(nobody.stdout) == []
 
 
-def test_answers_that_are_right_by_the_document_get_all_points(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_the_right_answers_of_the_document_get_all_points(tangy: Tangy, tmp_path: Path) -> None:
     """The document of a first run says what would have been right; the second run answers so."""
     asked = ("drill", "--json", "--rounds", "1", "--data", tmp_path / "d", "--seed")
     for seed in range(1, 30):
@@ -113,7 +111,7 @@ def test_answers_that_are_right_by_the_document_get_all_points(
     raise AssertionError("One round in five has no fault.")
 
 
-def test_without_lines_there_is_no_sheet_and_nothing_is_kept(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_drill_without_answers_is_not_stored(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "d")
     sheet = json.loads(tangy("drill", "--json", *data).stdout)
     assert (sheet["answers"], sheet["points"], sheet["median_seconds"]) == ([], 0, None)
@@ -144,7 +142,7 @@ def test_bad_input_is_status_two_and_one_sentence(
     assert said in done.stderr
 
 
-def test_with_what_was_learnt_nothing_has_to_be_shown(tangy: Tangy, taught: Path) -> None:
+def test_a_learnt_policy_needs_no_scripted_teacher(tangy: Tangy, taught: Path) -> None:
     done = tangy("drill", "--plain", "--rounds", "1", "--data", taught, stdin=answers(2))
     assert done.returncode == 0
     assert "for this drill a scripted teacher" not in done.stdout
@@ -160,7 +158,7 @@ def one_round(data: tuple[object, ...], who: str, tangy: Tangy) -> None:
     assert KEPT not in done.stdout
 
 
-def test_who_has_no_sheet_is_told_who_has(tangy: Tangy, taught: Path) -> None:
+def test_a_person_without_scores_gets_the_list_of_others(tangy: Tangy, taught: Path) -> None:
     data = ("--data", taught)
     one_round(data, "Ben", tangy)
     one_round(data, "Ada", tangy)
@@ -173,7 +171,7 @@ def test_who_has_no_sheet_is_told_who_has(tangy: Tangy, taught: Path) -> None:
 
 @pytest.mark.parametrize("left", ["quit\n", "", "0\nquit\n", "0\n"])
 @pytest.mark.parametrize("form", ["--plain", "--json"])
-def test_who_leaves_before_a_round_is_answered_is_told_that_nothing_is_kept(
+def test_leaving_before_the_first_answer_reports_that_nothing_is_stored(
     left: str, form: str, tangy: Tangy, taught: Path
 ) -> None:
     done = tangy("drill", form, "--seed", "3", "--data", taught, stdin=left)
@@ -187,7 +185,7 @@ def test_who_leaves_before_a_round_is_answered_is_told_that_nothing_is_kept(
 
 @pytest.mark.parametrize("form", ["--plain", "--json"])
 @pytest.mark.parametrize("lines", [0, 2])
-def test_what_was_answered_before_an_interrupt_is_kept_and_told(
+def test_answers_before_an_interrupt_are_stored_and_reported(
     lines: int, form: str, tangy: Tangy, taught: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     left = iter(("0", "1")[:lines])
@@ -207,7 +205,7 @@ def test_what_was_answered_before_an_interrupt_is_kept_and_told(
 
 
 @pytest.mark.slow
-def test_a_wrong_line_of_a_script_says_what_is_kept(tangy: Tangy, taught: Path) -> None:
+def test_a_wrong_line_of_a_script_reports_what_is_stored(tangy: Tangy, taught: Path) -> None:
     asked = ("drill", "--json", "--rounds", "4", "--seed", "3", "--data", taught)
     done = tangy(*asked, stdin="nonsense\n")
     assert (done.returncode, done.stdout, NOTHING_KEPT in done.stderr) == (2, "", True)

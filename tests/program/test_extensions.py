@@ -1,4 +1,4 @@
-"""Other packages add drivers, activities and methods, and edit nothing of ours."""
+"""Extensions: other packages add drivers, activities and methods without changing our code."""
 
 from __future__ import annotations
 
@@ -137,9 +137,7 @@ def tangy(python: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_doctor_lists_what_others_add_and_what_is_wrong_with_it(
-    installed: Path, tmp_path: Path
-) -> None:
+def test_doctor_lists_extensions_and_their_problems(installed: Path, tmp_path: Path) -> None:
     done = tangy(installed, "doctor", "--json", "--data", tmp_path)
     found = {one["part"]: (one["state"], one["text"]) for one in json.loads(done.stdout)}
     well = ("ok", "of tangy-radio 1.2 can be used.")
@@ -156,7 +154,7 @@ def test_doctor_lists_what_others_add_and_what_is_wrong_with_it(
         assert state == "broken" and words in text, part
 
 
-def test_a_driver_of_another_package_is_opened_by_its_kind(installed: Path, tmp_path: Path) -> None:
+def test_a_driver_of_another_package_is_opened(installed: Path, tmp_path: Path) -> None:
     said = tmp_path / "said.txt"
     body = load_robot().file.read_text(encoding="utf-8")
     mine = tmp_path / "mine.toml"
@@ -170,9 +168,7 @@ def test_a_driver_of_another_package_is_opened_by_its_kind(installed: Path, tmp_
     assert not voice["ok"] and "is no DriverKind" in voice["text"]
 
 
-def test_an_activity_of_another_package_is_known_by_its_name(
-    installed: Path, tmp_path: Path
-) -> None:
+def test_an_activity_of_another_package_is_found_by_name(installed: Path, tmp_path: Path) -> None:
     listed = tangy(installed, "activity", "list", "--json")
     assert {"bingo", "lotto"} <= {one["name"] for one in json.loads(listed.stdout)}
     done = tangy(installed, "activity", "phrases", "lotto", "--data", tmp_path)
@@ -181,7 +177,9 @@ def test_an_activity_of_another_package_is_known_by_its_name(
     assert (wrong.returncode, "did you mean 'lotto'?" in wrong.stderr) == (2, True)
 
 
-def test_a_method_of_another_package_chooses_for_a_person(installed: Path, tmp_path: Path) -> None:
+def test_a_method_of_another_package_can_be_chosen_for_a_person(
+    installed: Path, tmp_path: Path
+) -> None:
     done = tangy(installed, "people", "method", "user1", "turns", "--data", tmp_path)
     assert done.returncode == 0, done.stderr
     shown = tangy(installed, "people", "show", "user1", "--data", tmp_path)

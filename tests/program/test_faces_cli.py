@@ -1,4 +1,4 @@
-"""`tangy faces`: who is known by the face, with consent, until it is taken back."""
+"""`tangy faces`: enrolment with consent, recognition, and forgetting."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def data(_known: Path, tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_the_enrolled_are_known_and_others_are_not(tangy: Tangy, album: Path, data: Path) -> None:
+def test_only_enrolled_people_are_recognised(tangy: Tangy, album: Path, data: Path) -> None:
     pictures = [album / f"new-{person}.png" for person in range(3)]
     rows = json.loads(tangy("faces", "who", *pictures, "--json", "--data", data).stdout)
     assert [row["person"] for row in rows] == ["user2", "guest1", None]
@@ -65,7 +65,7 @@ def test_the_enrolled_are_known_and_others_are_not(tangy: Tangy, album: Path, da
     assert "Rosa (user2)" in told[0] and "unknown" in told[2]
 
 
-def test_without_consent_nothing_is_kept(tangy: Tangy, album: Path, tmp_path: Path) -> None:
+def test_nothing_is_stored_without_consent(tangy: Tangy, album: Path, tmp_path: Path) -> None:
     done = tangy("faces", "enrol", "user1", "--from", album / "0", "--data", tmp_path / "d")
     assert done.returncode == 2 and "has not agreed" in done.stderr
     assert done.stderr.count("\n") == 1
@@ -73,7 +73,7 @@ def test_without_consent_nothing_is_kept(tangy: Tangy, album: Path, tmp_path: Pa
 
 
 @pytest.mark.slow
-def test_somebody_who_is_known_is_not_made_somebody_else(
+def test_an_enrolled_person_cannot_be_enrolled_as_another(
     tangy: Tangy, album: Path, data: Path
 ) -> None:
     before = sorted((path.name, path.read_bytes()) for path in (data / "faces").iterdir())
@@ -83,7 +83,7 @@ def test_somebody_who_is_known_is_not_made_somebody_else(
     assert tangy("faces", "enrol", "Rosa", "--from", album / "0", "--data", data).returncode == 0
 
 
-def test_where_nobody_was_seen_no_name_is_kept(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_failed_enrolment_stores_no_name(tangy: Tangy, tmp_path: Path) -> None:
     (tmp_path / "walls").mkdir()
     for number in range(4):
         wall = np.full((200, 200, 3), 90 + 20 * number, np.uint8)
@@ -94,14 +94,14 @@ def test_where_nobody_was_seen_no_name_is_kept(tangy: Tangy, tmp_path: Path) -> 
     assert b"Mathilda" not in kept and b"Anna" not in kept
 
 
-def test_options_before_a_verb_are_the_verbs(tangy: Tangy, data: Path) -> None:
+def test_options_before_a_verb_apply_to_the_verb(tangy: Tangy, data: Path) -> None:
     shown = tangy("--data", data, "faces", "list")
     assert shown.stdout == tangy("faces", "list", "--data", data).stdout
     assert "Rosa" in shown.stdout
     assert "Rosa" not in tangy("--data", data, "faces", "list", "--data", data / "other").stdout
 
 
-def test_several_faces_in_a_picture_are_each_told(tangy: Tangy, data: Path) -> None:
+def test_each_of_several_faces_in_a_picture_is_reported(tangy: Tangy, data: Path) -> None:
     side_by_side = np.hstack([drawn_face(1, 30), drawn_face(0, 30)])
     cv2.imwrite(str(data / "two.png"), side_by_side)
     (row,) = json.loads(tangy("faces", "who", data / "two.png", "--json", "--data", data).stdout)
@@ -112,7 +112,7 @@ def test_several_faces_in_a_picture_are_each_told(tangy: Tangy, data: Path) -> N
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("answer", "kept"), [("y\n", True), ("n\n", False), ("\n", False)])
-def test_the_person_is_asked_on_a_terminal(
+def test_a_terminal_asks_the_person_for_consent(
     tangy: Tangy,
     album: Path,
     tmp_path: Path,
@@ -133,7 +133,9 @@ def test_the_person_is_asked_on_a_terminal(
         assert "may Tangy" not in tangy(*asked).stderr  # it was asked before
 
 
-def test_how_they_agreed_is_logged_with_no_name(tangy: Tangy, album: Path, tmp_path: Path) -> None:
+def test_the_form_of_consent_is_logged_without_names(
+    tangy: Tangy, album: Path, tmp_path: Path
+) -> None:
     how = "Bob said yes; bob was asked by staff"
     asked = ("--from", album / "0", "--consent", how, "--data", tmp_path / "d")
     assert tangy("faces", "enrol", "Bob", *asked).returncode == 0
@@ -142,14 +144,14 @@ def test_how_they_agreed_is_logged_with_no_name(tangy: Tangy, album: Path, tmp_p
     assert row["how"] == "guest1 said yes; guest1 was asked by staff"
 
 
-def test_what_is_kept_is_for_its_owner_alone(data: Path) -> None:
+def test_face_files_are_private(data: Path) -> None:
     files = sorted((data / "faces").iterdir())
     assert len(files) == 2
     assert {stat.S_IMODE(path.stat().st_mode) for path in files} == {0o600}
     assert stat.S_IMODE((data / "faces").stat().st_mode) == 0o700
 
 
-def test_the_log_says_who_agreed_how_without_a_name(tangy: Tangy, data: Path) -> None:
+def test_consent_is_listed_by_person_and_form(tangy: Tangy, data: Path) -> None:
     rows = json.loads(tangy("faces", "list", "--json", "--data", data).stdout)
     assert [(row["id"], row["name"], row["pictures"]) for row in rows] == [
         ("guest1", "Ben", 5),
@@ -158,7 +160,7 @@ def test_the_log_says_who_agreed_how_without_a_name(tangy: Tangy, data: Path) ->
     assert rows[1]["how"] == "in writing; user2 was asked by staff"
 
 
-def test_a_face_is_forgotten(tangy: Tangy, album: Path, data: Path) -> None:
+def test_a_face_can_be_forgotten(tangy: Tangy, album: Path, data: Path) -> None:
     assert "face is forgotten." in tangy("faces", "forget", "Rosa", "--data", data).stdout
     (row,) = json.loads(tangy("faces", "who", album / "new-0.png", "--json", "--data", data).stdout)
     assert row["person"] is None
@@ -168,7 +170,7 @@ def test_a_face_is_forgotten(tangy: Tangy, album: Path, data: Path) -> None:
 
 
 @pytest.mark.parametrize("who", ["Rosa", "guest1"])
-def test_of_somebody_who_is_forgotten_nothing_is_left(tangy: Tangy, data: Path, who: str) -> None:
+def test_forgetting_a_person_leaves_no_data(tangy: Tangy, data: Path, who: str) -> None:
     name, id = ("Rosa", "user2") if who == "Rosa" else ("Ben", "guest1")
     with Store.open(data) as store:
         store.pronounce(id, "R OW Z AH")
@@ -184,7 +186,7 @@ def test_of_somebody_who_is_forgotten_nothing_is_left(tangy: Tangy, data: Path, 
     assert "cannot" not in tangy("people", "list", "--data", data).stderr
 
 
-def test_what_is_no_picture_is_said_in_one_sentence(tangy: Tangy, data: Path) -> None:
+def test_an_invalid_picture_is_refused_in_one_sentence(tangy: Tangy, data: Path) -> None:
     dot, torn, text = data / "dot.png", data / "torn.png", data / "text.png"
     cv2.imwrite(str(dot), drawn_face(0)[:1, :1])
     cv2.imwrite(str(torn), drawn_face(0))
@@ -196,13 +198,13 @@ def test_what_is_no_picture_is_said_in_one_sentence(tangy: Tangy, data: Path) ->
         assert path.name in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_grey_pictures_will_do(tangy: Tangy, data: Path) -> None:
+def test_grey_pictures_are_accepted(tangy: Tangy, data: Path) -> None:
     cv2.imwrite(str(data / "grey.jpg"), cv2.cvtColor(drawn_face(0, 9), cv2.COLOR_BGR2GRAY))
     (row,) = json.loads(tangy("faces", "who", data / "grey.jpg", "--json", "--data", data).stdout)
     assert row["name"] == "Rosa"
 
 
-def test_a_picture_without_a_face_is_told(tangy: Tangy, data: Path) -> None:
+def test_a_picture_without_a_face_is_reported(tangy: Tangy, data: Path) -> None:
     cv2.imwrite(str(data / "wall.png"), drawn_face(0)[:60, :100] * 0 + 120)
     done = tangy("faces", "who", data / "wall.png", "--data", data)
     assert done.returncode == 0 and "no face is seen" in done.stdout
@@ -237,13 +239,13 @@ def test_bad_pictures_of_a_folder_are_named_with_the_reason(
     assert row["pictures"] == 4  # those of before
 
 
-def test_more_pictures_are_added(tangy: Tangy, album: Path, data: Path, tmp_path: Path) -> None:
+def test_more_pictures_can_be_added(tangy: Tangy, album: Path, data: Path, tmp_path: Path) -> None:
     cv2.imwrite(str(tmp_path / "more.png"), drawn_face(0, 50))
     done = tangy("faces", "enrol", "Rosa", "--from", tmp_path / "more.png", "--add", "--data", data)
     assert "from 6 pictures. With" in done.stdout
 
 
-def test_somebody_who_looks_like_another_is_told(tangy: Tangy, album: Path, data: Path) -> None:
+def test_a_similar_enrolled_person_is_reported(tangy: Tangy, album: Path, data: Path) -> None:
     done = tangy("faces", "enrol", "Eve", "--from", album / "0", "--consent", "x", "--data", data)
     assert "also look like Rosa (user2)" in done.stdout
 
@@ -273,7 +275,7 @@ def test_pictures_of_one_person_vote(tangy: Tangy, album: Path, data: Path) -> N
     assert (row["name"], row["votes"], len(row["files"])) == ("Rosa", 3, 3)
 
 
-def test_a_broken_face_is_one_sentence_and_can_be_forgotten(tangy: Tangy, data: Path) -> None:
+def test_a_damaged_face_file_is_reported_in_one_sentence(tangy: Tangy, data: Path) -> None:
     path = data / "faces" / "hoglbp1-user2.face"
     path.write_bytes(path.read_bytes()[:-7])
     for asked in (("list",), ("who", data / "x.png")):
@@ -297,7 +299,7 @@ def test_a_broken_face_is_one_sentence_and_can_be_forgotten(tangy: Tangy, data: 
         (("forget", "nobody"), "There is nobody called"),
     ],
 )
-def test_mistakes_are_said_in_one_sentence(
+def test_mistakes_are_reported_in_one_sentence(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: Any, says: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -306,9 +308,7 @@ def test_mistakes_are_said_in_one_sentence(
 
 
 @pytest.mark.slow
-def test_a_name_that_cannot_be_one_leaves_nothing(
-    tangy: Tangy, album: Path, tmp_path: Path
-) -> None:
+def test_an_invalid_name_stores_nothing(tangy: Tangy, album: Path, tmp_path: Path) -> None:
     for name in (" ", "x" * 50, "a\x1bb", "front"):
         done = tangy(
             "faces",

@@ -1,4 +1,4 @@
-"""The first screen is painted without what is heavy: nobody waits for a forest to see a menu."""
+"""The first screen loads no heavy package."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_the_first_screen_loads_nothing_heavy_and_collects_garbage_afterwards(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("module", ["tangy_tui.ui.run", "tangy_tui.ui.dialogs.name"])
-def test_home_and_the_question_for_a_name_load_no_grammar_of_games(module: str) -> None:
+def test_home_and_the_name_dialog_load_no_game_grammar(module: str) -> None:
     code = f"import sys, {module}; print(*sys.modules)"
     done = subprocess.run(  # noqa: S603 - our own interpreter
         [sys.executable, "-c", code], capture_output=True, text=True, check=True

@@ -1,4 +1,4 @@
-"""Lines on a terminal are broken between words; where they are piped they stay whole."""
+"""Lines on a terminal are wrapped between words; piped lines stay whole."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.support.terminal import TANGY, Terminal
 
 
 @given(st.text(alphabet="ab .:-", max_size=200), st.integers(10, 90))
-def test_a_broken_line_has_the_words_of_the_whole_one(line: str, columns: int) -> None:
+def test_wrapping_a_line_keeps_its_words(line: str, columns: int) -> None:
     broken = fitted(line, columns)
     assert broken.split() == line.split()
     longest = max((len(word) for word in line.split()), default=0)
@@ -23,16 +23,14 @@ def test_a_broken_line_has_the_words_of_the_whole_one(line: str, columns: int) -
         assert len(part) <= columns or longest + inset > columns
 
 
-def test_a_line_that_belongs_to_a_list_goes_on_further_in() -> None:
+def test_a_wrapped_list_item_is_indented() -> None:
     assert fitted("  undo: take the last step back", 20) == "  undo: take the\n    last step back"
     assert fitted("undo: take the last step back", 0) == "undo: take the last step back"
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("columns", [40, 80])
-def test_teaching_by_lines_breaks_no_word_at_the_edge_of_a_terminal(
-    tmp_path: Path, columns: int
-) -> None:
+def test_teaching_by_lines_wraps_between_words(tmp_path: Path, columns: int) -> None:
     command = [TANGY, "--data", str(tmp_path), "teach", "--plain", "--teacher", "ann", "--seed=3"]
     terminal = Terminal(command, columns=columns, lines=90)
     try:

@@ -1,4 +1,4 @@
-"""A test that hangs fails by its name, whatever it hangs in, and those beside it pass."""
+"""A hanging test fails by its name, and the other tests pass."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_passes():
 """
 
 
-def test_each_that_hangs_fails_and_is_named(tmp_path: Path) -> None:
+def test_each_hanging_test_fails_by_name(tmp_path: Path) -> None:
     (tmp_path / "test_hanging.py").write_text(HANGING, encoding="utf-8")
     (tmp_path / "conftest.py").write_text('pytest_plugins = ["tests.support.hangs"]', "utf-8")
     (tmp_path / "pytest.ini").write_text("[pytest]\nasyncio_mode = auto\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the import contracts refuse, each tried on a copy of the sources."""
+"""The import contracts, each violated on a copy of the sources."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def adds(path: Path, line: str) -> None:
     path.write_text(f"{before}\n\ndef late() -> None:\n    {line}\n", encoding="utf-8")
 
 
-def test_the_sources_as_they_are_keep_every_contract(copy: Path) -> None:
+def test_the_sources_keep_every_contract(copy: Path) -> None:
     assert lint(copy) == ""
 
 
@@ -59,7 +59,7 @@ def test_an_import_to_a_layer_above_is_refused_by_name(
     assert named in lint(copy)
 
 
-def test_a_way_round_by_a_new_module_is_refused(copy: Path) -> None:
+def test_an_indirect_import_by_a_new_module_is_refused(copy: Path) -> None:
     adds(copy / "tangy_tui/scoreboard.py", "import textual")
     adds(copy / "tangy_tui/learning/policy.py", "import tangy_tui.scoreboard")
     said = lint(copy)

@@ -1,4 +1,4 @@
-"""The program by lines: everything is said in a line that a screen reader can read."""
+"""The program by lines: every output is a line that a screen reader can read."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def told(
     return said
 
 
-def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(
+def test_a_session_begins_with_instructions_and_the_state(
     workspace: Workspace,
 ) -> None:
     said = told(workspace)
@@ -70,11 +70,11 @@ def test_the_question_names_the_behaviour_and_only_y_executes_it(workspace: Work
 
 
 @pytest.mark.parametrize("yes", ["y", "Y", "yes", "Yes", " YES "])
-def test_yes_in_full_is_taken_as_well(workspace: Workspace, yes: str) -> None:
+def test_yes_in_full_is_accepted(workspace: Workspace, yes: str) -> None:
     assert "1. the game has not begun -> greet everyone" in told(workspace, "greet everyone", yes)
 
 
-def test_help_at_the_question_says_what_can_be_answered(workspace: Workspace) -> None:
+def test_help_at_a_question_lists_its_answers(workspace: Workspace) -> None:
     said = told(workspace, "goodbye number", "help", "n", "greet everyone", "?")
     at = said.index("Please answer Y to do it, or N for another command.")
     assert [line.partition(":")[0] for line in said[at + 1 : at + 5]] == [
@@ -85,16 +85,14 @@ def test_help_at_the_question_says_what_can_be_answered(workspace: Workspace) ->
 
 
 @pytest.mark.parametrize("answer", ["y", "N", "yes", "no"])
-def test_an_answer_without_a_question_is_told_so(workspace: Workspace, answer: str) -> None:
+def test_an_answer_without_a_question_is_reported(workspace: Workspace, answer: str) -> None:
     assert told(workspace, answer)[-1] == "There is no question open: give a command."
 
 
 @pytest.mark.parametrize(
     "words", ["stop the robot", "Emergency stop!", "make it stop", "stop the bingo game"]
 )
-def test_a_typed_stop_stops_and_answers_what_is_asked_with_no(
-    workspace: Workspace, words: str
-) -> None:
+def test_a_typed_stop_answers_an_open_question_with_no(workspace: Workspace, words: str) -> None:
     stands = "STOP: the simulated robot stands still until your next command."
     assert told(workspace, words)[-1] == stands
     said = told(workspace, "greet everyone", words, "y")
@@ -103,25 +101,23 @@ def test_a_typed_stop_stops_and_answers_what_is_asked_with_no(
 
 
 @pytest.mark.parametrize("words", ["stop teasing her", "stop the music", "don't stop"])
-def test_what_only_mentions_stopping_is_a_command_like_another(
-    workspace: Workspace, words: str
-) -> None:
+def test_a_mention_of_stopping_is_an_ordinary_command(workspace: Workspace, words: str) -> None:
     assert not any(line.startswith("STOP") for line in told(workspace, words))
 
 
 @pytest.mark.parametrize("words", ["again", "Again", "again from step", "again N"])
-def test_again_wants_a_step(workspace: Workspace, words: str) -> None:
+def test_again_needs_a_step(workspace: Workspace, words: str) -> None:
     assert told(workspace, words)[-1] == "Say which step: `again 5` goes back to before step 5."
 
 
-def test_n_gives_the_words_back(workspace: Workspace) -> None:
+def test_n_returns_the_words(workspace: Workspace) -> None:
     for no in ("n", "N", "no", "No"):
         said = told(workspace, "greet everyone", no)
         assert "Not done: greet everyone. Give a new command." in said
         assert not any(line.startswith("1. ") for line in said)
 
 
-def test_alternatives_are_chosen_by_number_and_asked_about_again(workspace: Workspace) -> None:
+def test_alternatives_are_chosen_by_number_and_verified(workspace: Workspace) -> None:
     said = told(workspace, "goodbye number", "9", "2", "1")
     asked = [line.partition("?")[0] for line in said if line.startswith("Did you say: ")]
     goodbye, call = "Did you say: say goodbye", "Did you say: call number"
@@ -147,7 +143,7 @@ def test_undo_where_help_and_quit_are_understood(workspace: Workspace) -> None:
     assert not any("joke?" in line for line in said), "after quit nothing is read"
 
 
-def test_a_session_that_is_left_is_gone_on_with(workspace: Workspace) -> None:
+def test_an_unfinished_session_is_resumed(workspace: Workspace) -> None:
     said = told(workspace, "greet everyone", "y", "next number", "y", "quit")
     assert said[-1] == (
         "You left after 2 steps. What you confirmed is kept. Go on from here with `tangy teach`."
@@ -156,7 +152,7 @@ def test_a_session_that_is_left_is_gone_on_with(workspace: Workspace) -> None:
     assert told(workspace, resume=False)[1].startswith("A new demonstration by Ada")
 
 
-def test_what_is_not_in_the_log_is_not_said_to_be_kept(workspace: Workspace) -> None:
+def test_only_logged_steps_are_reported_as_kept(workspace: Workspace) -> None:
     told(workspace, "greet everyone", "y", "next number", "y", "quit")
     kept = told(workspace, "quit")
     assert kept[-1].startswith("You left after 2 steps.")
@@ -168,7 +164,7 @@ def test_what_is_not_in_the_log_is_not_said_to_be_kept(workspace: Workspace) -> 
     assert gone_on[-1].startswith("You left after 2 steps.")
 
 
-def test_what_is_missing_stands_under_a_heading(workspace: Workspace) -> None:
+def test_missing_situations_have_a_heading(workspace: Workspace) -> None:
     def seen(*lines: str) -> list[str]:
         said: list[str] = []
         typed = iter(["seen"])
@@ -187,14 +183,14 @@ def test_what_is_missing_stands_under_a_heading(workspace: Workspace) -> None:
     assert seen("2 of 2 were shown.") == ["2 of 2 were shown."]
 
 
-def test_the_command_that_goes_on_names_what_is_not_usual() -> None:
+def test_the_command_to_resume_names_unusual_options() -> None:
     assert command_line("teach", teacher=None, data=None) == "tangy teach"
     said = command_line("teach", teacher="Ada Lovelace", data="some where")
     assert said == "tangy teach --teacher 'Ada Lovelace' --data 'some where'"
     assert command_line("learn", data="ab").isprintable()
 
 
-def test_the_command_that_is_told_goes_on_where_it_was_left(
+def test_the_printed_command_resumes_the_session(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("USER", "me")
@@ -207,7 +203,7 @@ def test_the_command_that_is_told_goes_on_where_it_was_left(
         assert "Going on with " in again
 
 
-def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(
+def test_unknown_words_are_returned_with_suggestions(
     workspace: Workspace,
 ) -> None:
     said = told(workspace, "qwertz \x1b[2J")
@@ -217,7 +213,7 @@ def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(
     assert any("You can say" in line or "Did you say" in line for line in near[3:])
 
 
-def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Workspace) -> None:
+def test_a_whole_game_can_be_taught_by_lines_before_the_next(workspace: Workspace) -> None:
     teaching = workspace.teaching("Ada", 1)
     said: list[str] = []
     answers: list[str] = []
@@ -256,7 +252,7 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Worksp
 
 
 @pytest.mark.parametrize("terminal", [True, False], ids=["terminal", "pipe"])
-def test_enter_alone_lists_what_can_be_said_now(workspace: Workspace, terminal: bool) -> None:
+def test_an_empty_line_lists_the_possible_commands(workspace: Workspace, terminal: bool) -> None:
     typed, said = iter(["\n", "quit"]), list[str]()
     teaching = workspace.teaching("Ada", 1)
     yes = TypedYes(terminal=terminal, setting="y", flush=lambda: None)
@@ -265,7 +261,7 @@ def test_enter_alone_lists_what_can_be_said_now(workspace: Workspace, terminal: 
     assert teaching.sayable and all(phrase in said[-1] for phrase in teaching.sayable)
 
 
-def test_an_empty_line_of_a_script_says_nothing(workspace: Workspace) -> None:
+def test_an_empty_line_of_a_script_prints_nothing(workspace: Workspace) -> None:
     typed, said = iter(["\n", "\n", "quit"]), list[str]()
     teaching = workspace.teaching("Ada", 1)
     session = TeachingLines(teaching, lambda: next(typed, None), said.append, scripted=True)
@@ -273,7 +269,7 @@ def test_an_empty_line_of_a_script_says_nothing(workspace: Workspace) -> None:
     assert not any(SAYABLE in line for line in said)
 
 
-def test_after_a_game_by_lines_tangy_learns_and_plays_by_their_words(tangy: Tangy) -> None:
+def test_learn_and_play_work_by_lines(tangy: Tangy) -> None:
     whole = tangy("teach", "--teacher", "scripted", "--seed", "1")
     assert whole.returncode == 0
     session = tangy("teach", "--plain", "--teacher", "Ada", stdin="play\nlearn\nplay\nend\ny\n")
@@ -284,7 +280,7 @@ def test_after_a_game_by_lines_tangy_learns_and_plays_by_their_words(tangy: Tang
 
 @pytest.mark.slow
 @given(st.lists(st.text(max_size=20) | st.sampled_from(["y", "n", "1", "undo", "next number"])))
-def test_whatever_is_typed_is_answered_in_printable_lines(lines: list[str]) -> None:
+def test_any_input_is_answered_in_printable_lines(lines: list[str]) -> None:
     with TemporaryDirectory() as folder:
         workspace = Workspace(Path(folder))
         with workspace.store.transaction():
@@ -293,7 +289,7 @@ def test_whatever_is_typed_is_answered_in_printable_lines(lines: list[str]) -> N
     assert all(line.isprintable() for line in said)
 
 
-def test_games_are_told_step_by_step_with_responses_and_beliefs(
+def test_games_are_printed_step_by_step_with_responses_and_posteriors(
     workspace: Workspace, cover: Cover
 ) -> None:
     policy = learn_policy(
@@ -313,7 +309,7 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
     assert all(line.isprintable() for line in said)
 
 
-def test_what_people_did_is_said_kindly(workspace: Workspace, cover: Cover) -> None:
+def test_responses_of_people_are_worded_kindly(workspace: Workspace, cover: Cover) -> None:
     policy = learn_policy(
         workspace.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5)
     )
@@ -330,7 +326,7 @@ def test_what_people_did_is_said_kindly(workspace: Workspace, cover: Cover) -> N
     assert line(followed=False, complied=False).startswith(never)
 
 
-def test_a_stopped_game_says_why(workspace: Workspace, cover: Cover) -> None:
+def test_a_stopped_game_gives_its_reason(workspace: Workspace, cover: Cover) -> None:
     shown = [demonstration.without_last() for demonstration in cover("bingo", 1, 4)]
     policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
     said = play_by_turns(workspace.supervision(policy, 3), scripted=True)
@@ -360,7 +356,7 @@ def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
     return said[2:stopped]
 
 
-def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(
+def test_a_typed_stop_at_a_question_executes_nothing(
     workspace: Workspace,
 ) -> None:
     stands = "STOP: Tangy stands still. Type: go on."
@@ -369,7 +365,7 @@ def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(
     assert (said, last) == (stands, "There is no question open: give a command.")
 
 
-def test_while_tangy_asks_it_says_why_and_what_it_sees(workspace: Workspace) -> None:
+def test_why_and_where_work_at_a_question(workspace: Workspace) -> None:
     why, *others = asked(workspace, "why", "Where")
     assert why == "Situation: the game has not begun."
     assert "Nobody has shown Tangy what to do here. It asks instead of acting." in others
@@ -380,14 +376,14 @@ def test_while_tangy_asks_it_says_why_and_what_it_sees(workspace: Workspace) -> 
     )
 
 
-def test_without_the_demonstrations_it_still_says_the_votes(workspace: Workspace) -> None:
+def test_why_without_demonstrations_prints_the_votes(workspace: Workspace) -> None:
     assert asked(workspace, "why", knows=False) == [
         "Nobody has shown Tangy what to do here yet: the game has not begun.",
         "Votes of the trees: call number 100%.",
     ]
 
 
-def test_while_tangy_asks_there_is_help_for_every_word(workspace: Workspace) -> None:
+def test_help_at_a_question_explains_every_word(workspace: Workspace) -> None:
     answer = "Say in words what Tangy should do, or type: where, why, help, end."
     said = asked(workspace, "help")
     assert said[0] == answer
@@ -399,11 +395,11 @@ def test_while_tangy_asks_there_is_help_for_every_word(workspace: Workspace) -> 
 
 
 @pytest.mark.parametrize("word", ["undo", "redo"])
-def test_while_tangy_asks_nothing_is_taken_back(workspace: Workspace, word: str) -> None:
+def test_undo_is_refused_at_a_question(workspace: Workspace, word: str) -> None:
     assert asked(workspace, word) == [f"You cannot {word} in a game."]
 
 
-def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: Workspace) -> None:
+def test_the_verification_of_an_answer_accepts_yes_in_full(workspace: Workspace) -> None:
     said = asked(workspace, "greet everyone", "perhaps", "help", "YES", "quit")
     assert said[0].startswith("Did you say: greet everyone?")
     assert said[1] == said[2] == "Please answer Y to do it, or N for another command."
@@ -415,7 +411,7 @@ def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: 
     assert left[1:] == ["You ended the game. Tangy stands still."], "after quit nothing is read"
 
 
-def test_what_was_said_is_in_the_log(workspace: Workspace) -> None:
+def test_a_session_by_lines_is_logged(workspace: Workspace) -> None:
     told(workspace, "greet everyone", "y")
     workspace.close()
     with Store.open(workspace.store.folder, write=False) as store:

@@ -1,4 +1,4 @@
-"""`tangy listen` and `tangy mic check` refuse in a sentence what they cannot use."""
+"""`tangy listen` and `tangy mic check`: results, and refusals in one sentence."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ Tell = Callable[[int, list[dict[str, Any]]], None]
         (("nowhere.wav",), "nowhere.wav: there is no such file."),
     ],
 )
-def test_what_cannot_be_heard_is_refused_in_a_sentence(
+def test_an_unusable_recording_is_refused_in_one_sentence(
     arguments: tuple[str, ...], sentence: str, tangy: Tangy, tmp_path: Path
 ) -> None:
     done = tangy("listen", *arguments, "--data", tmp_path / "data")
@@ -53,9 +53,7 @@ def test_what_cannot_be_heard_is_refused_in_a_sentence(
     assert not (tmp_path / "data").exists()
 
 
-def test_each_line_of_text_is_understood_as_if_it_had_been_heard(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_each_line_of_text_is_understood_like_speech(tangy: Tangy, tmp_path: Path) -> None:
     said = tmp_path / "said.txt"
     said.write_text("call the next number\nGo to user 2\n\nthe soup was salty\nstop the robot\n")
     done = tangy("listen", "--text", said, "--json", "--data", tmp_path / "data")
@@ -73,14 +71,14 @@ def test_each_line_of_text_is_understood_as_if_it_had_been_heard(
     )
 
 
-def test_lines_of_text_are_told_in_words(tangy: Tangy, tmp_path: Path) -> None:
+def test_lines_of_text_are_reported_in_words(tangy: Tangy, tmp_path: Path) -> None:
     said = tmp_path / "said.txt"
     said.write_text("tell a joke")
     done = tangy("listen", "--text", said, "--data", tmp_path / "data")
     assert done.stdout.startswith("'tell a joke' -> tell a joke, ")
 
 
-def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Path) -> None:
+def test_an_empty_folder_explains_how_to_name_recordings(tangy: Tangy, tmp_path: Path) -> None:
     (tmp_path / "set").mkdir()
     done = tangy("listen", "--bench", tmp_path / "set", "--data", tmp_path / "data")
     assert (done.returncode, done.stdout) == (2, "")
@@ -95,7 +93,7 @@ def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Pat
         (["joke-1.wav", "joke-2.wav"], "none of its 2 recordings can be heard; "),
     ],
 )
-def test_a_folder_of_which_nothing_can_be_heard_is_refused(
+def test_a_folder_without_usable_recordings_is_refused(
     files: list[str], says: str, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def start(self: Recogniser, wanted: DecoderVocabulary) -> None:
@@ -110,7 +108,7 @@ def test_a_folder_of_which_nothing_can_be_heard_is_refused(
     assert says in done.stderr
 
 
-def test_lines_say_the_tier_and_the_choices(
+def test_lines_show_the_tier_and_the_choices(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     go = {"behaviour": "navigate to user", "arguments": {"user": "user2"}}
@@ -150,7 +148,7 @@ def test_lines_say_the_tier_and_the_choices(
     ]
 
 
-def test_progress_is_shown_beside_a_document_where_somebody_can_see_it(
+def test_progress_is_shown_only_on_a_terminal(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen: list[tuple[int, int]] = []
@@ -171,7 +169,7 @@ def test_progress_is_shown_beside_a_document_where_somebody_can_see_it(
     assert seen == [(1, 2), (2, 2)]
 
 
-def test_a_file_that_ends_early_is_heard_and_told_of(
+def test_a_truncated_file_is_decoded_and_reported(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(transcription, "listen", lambda files, book, settings, tell: [])
@@ -183,7 +181,7 @@ def test_a_file_that_ends_early_is_heard_and_told_of(
     assert done.stderr == f"tangy: {cut}: ends 0.5 s early; what is there was heard.\n"
 
 
-def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usual_ones(
+def test_default_settings_of_an_unchecked_microphone_are_reported(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(transcription, "listen", lambda files, book, settings, tell: [])
@@ -202,7 +200,7 @@ def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usua
     )
 
 
-def test_who_is_asked_for_consent_is_told_how_to_delete_what_is_kept_there(
+def test_the_question_for_consent_explains_how_to_delete(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[str] = []
@@ -222,7 +220,7 @@ def test_who_is_asked_for_consent_is_told_how_to_delete_what_is_kept_there(
     assert "`tangy listen --forget-recordings`" in asked[1]
 
 
-def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Path) -> None:
+def test_deleting_recordings_withdraws_consent(tangy: Tangy, tmp_path: Path) -> None:
     folder = tmp_path / "data"
     with Store.open(folder) as store:
         consent(store, "rosa", True)
@@ -244,7 +242,7 @@ def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Pa
         (2, 2, ["2 recordings deleted.", "2 other files are left in "]),
     ],
 )
-def test_what_is_deleted_and_left_is_counted_in_words(
+def test_deleted_and_kept_files_are_counted(
     recordings: int, others: int, told: list[str], tangy: Tangy, tmp_path: Path
 ) -> None:
     folder = tmp_path / "recordings" / "joke"
@@ -261,15 +259,13 @@ def test_what_is_deleted_and_left_is_counted_in_words(
 
 
 class TestCheckingAMicrophone:
-    def test_a_source_that_is_none_is_refused(self, tangy: Tangy, tmp_path: Path) -> None:
+    def test_an_invalid_source_is_refused(self, tangy: Tangy, tmp_path: Path) -> None:
         done = tangy("mic", "check", "--mic", "nowhere.wav", "--data", tmp_path / "data")
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr == "tangy: nowhere.wav: there is no such file.\n"
 
     @pytest.mark.slow
-    def test_what_is_to_be_said_is_listed_for_a_recording(
-        self, tangy: Tangy, tmp_path: Path
-    ) -> None:
+    def test_the_phrases_for_a_recording_are_listed(self, tangy: Tangy, tmp_path: Path) -> None:
         folder = tmp_path / "data"
         lines = tangy("mic", "check", "--list", "--data", folder).stdout.splitlines()
         said = json.loads(tangy("mic", "check", "--list", "--json", "--data", folder).stdout)
@@ -288,7 +284,7 @@ class TestCheckingAMicrophone:
             ("arecord", False, ALONE),
         ],
     )
-    def test_silence_is_waited_out_only_where_somebody_could_end_it(
+    def test_the_patience_for_silence_depends_on_the_terminal(
         self, mic: str, terminal: bool, seconds: float, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
@@ -297,7 +293,7 @@ class TestCheckingAMicrophone:
 
     @pytest.mark.slow
     @pytest.mark.parametrize(("understood", "status"), [(6, 0), (2, 1)])
-    def test_a_check_that_fails_stores_nothing_and_the_status_says_so(
+    def test_a_failed_check_stores_nothing_and_sets_the_exit_status(
         self,
         understood: int,
         status: int,
@@ -327,7 +323,7 @@ class TestCheckingAMicrophone:
             assert any(store.events("microphone checked")) is not bool(status)
 
     @pytest.mark.slow
-    def test_what_was_not_measured_is_not_put_in_figures(
+    def test_unmeasured_values_are_not_printed_as_figures(
         self, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         chosen = CalibrationResult(
@@ -347,7 +343,9 @@ class TestCheckingAMicrophone:
         assert "5 of 6 commands understood; no other sentence was heard." in done.stdout
         assert json.loads(tangy(*check, "--json").stdout)["room_db"] is None
 
-    def test_forgetting_says_whether_there_was_anything(self, tangy: Tangy, tmp_path: Path) -> None:
+    def test_forgetting_reports_whether_settings_existed(
+        self, tangy: Tangy, tmp_path: Path
+    ) -> None:
         folder = tmp_path / "data"
         arguments = ("mic", "check", "--mic", "socket", "--forget", "--data", folder)
         assert tangy(*arguments).stdout == "socket: nothing was stored.\n"
@@ -357,7 +355,7 @@ class TestCheckingAMicrophone:
         assert tangy(*arguments).stdout == "socket: forgotten.\n"
         assert tangy(*arguments).stdout == "socket: nothing was stored.\n"
 
-    def test_help_says_what_will_be_asked_and_that_nothing_is_kept(self, tangy: Tangy) -> None:
+    def test_help_explains_the_check_and_what_is_stored(self, tangy: Tangy) -> None:
         done = tangy("mic", "check", "--help")
         assert done.returncode == 0
         said = " ".join(done.stdout.split())

@@ -1,4 +1,4 @@
-"""Staff say which cards were dealt, and are told by lines what is not judged."""
+"""Cards dealt by staff on the command line, and reports on unjudged cards."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def test_cards_are_dealt_by_name_or_id() -> None:
         (["Ada=17", "Cleo=17"], "no card two people"),
     ],
 )
-def test_what_cannot_be_dealt_is_refused_in_a_sentence(texts: list[str], says: str) -> None:
+def test_an_invalid_deal_is_refused_in_one_sentence(texts: list[str], says: str) -> None:
     with pytest.raises(TangyError, match="--card") as refused:
         read_dealt(texts, PEOPLE)
     assert says in str(refused.value) and "\n" not in str(refused.value)
 
 
-def test_on_the_bench_cards_are_dealt_by_the_bench(tangy: Tangy) -> None:
+def test_the_bench_deals_its_own_cards(tangy: Tangy) -> None:
     done = tangy("live", "--bench", "--headless", "--card", "Ada=17")
     assert done.returncode == 2 and "--card: the bench brings its own" in done.stderr
 
@@ -62,7 +62,7 @@ def test_on_the_bench_cards_are_dealt_by_the_bench(tangy: Tangy) -> None:
         ("other card", (31,), "", "The card in front of Ada is 31; theirs is 17, as far as"),
     ],
 )  # fmt: skip
-def test_staff_are_told_plainly_why_a_card_is_not_judged(
+def test_the_reason_for_an_unjudged_card_is_explained(
     why: Doubt, cards: tuple[int, ...], owner: str, says: str
 ) -> None:
     doubt = CardDoubt("user1", cards, why, 17, owner)
@@ -71,6 +71,6 @@ def test_staff_are_told_plainly_why_a_card_is_not_judged(
     assert (document["game"], document["why"], document["cards"]) == (2, why, [*cards])
 
 
-def test_staff_are_told_which_card_is_taken_for_whose() -> None:
+def test_a_learnt_card_is_reported_with_its_owner() -> None:
     words = learnt_words(CardLearnt("user1", 17), NAMES)
     assert words == "Card 17 lies in front of Ada: Tangy takes it for theirs."

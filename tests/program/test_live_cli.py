@@ -1,4 +1,4 @@
-"""`tangy live`: what is refused before a robot is switched on."""
+"""`tangy live`: options refused before a robot is opened."""
 
 from __future__ import annotations
 
@@ -21,14 +21,12 @@ def refusal(workspace: Workspace, map_: Path) -> str:
     return str(refused.value)
 
 
-def test_a_map_on_which_the_robot_can_stand_everywhere_is_taken(
-    workspace: Workspace, tmp_path: Path
-) -> None:
+def test_a_map_with_every_place_free_is_accepted(workspace: Workspace, tmp_path: Path) -> None:
     write_map(map_of_room(workspace.room, people=4), tmp_path / "room.yaml")
     check_map(workspace, str(tmp_path / "room.yaml"))
 
 
-def test_what_is_no_map_is_refused_by_its_name(workspace: Workspace, tmp_path: Path) -> None:
+def test_an_invalid_map_is_refused_by_name(workspace: Workspace, tmp_path: Path) -> None:
     assert refusal(workspace, tmp_path / "none.yaml").startswith(
         f"{tmp_path / 'none.yaml'}: there is no"
     )
@@ -36,7 +34,7 @@ def test_what_is_no_map_is_refused_by_its_name(workspace: Workspace, tmp_path: P
     assert "words.yaml, line 1: 'some' is not known" in refusal(workspace, tmp_path / "words.yaml")
 
 
-def test_a_map_of_another_room_is_refused_with_the_place_that_is_not_on_it(
+def test_a_map_of_another_room_is_refused_with_the_missing_place(
     workspace: Workspace, tmp_path: Path
 ) -> None:
     here = map_of_room(workspace.room, people=4)
@@ -47,7 +45,7 @@ def test_a_map_of_another_room_is_refused_with_the_place_that_is_not_on_it(
     )
 
 
-def test_a_list_of_faults_is_refused_with_the_line_that_is_none(
+def test_a_list_of_faults_is_refused_with_its_invalid_line(
     tangy: Callable[..., CompletedProcess[str]], tmp_path: Path
 ) -> None:
     faults = tmp_path / "faults"
@@ -57,7 +55,7 @@ def test_a_list_of_faults_is_refused_with_the_line_that_is_none(
     assert f"{faults}, line 4: There is no fault 'camera-frosen'" in done.stderr
 
 
-def test_a_robot_is_a_toml_file(
+def test_a_robot_file_must_be_toml(
     tangy: Callable[..., CompletedProcess[str]], tmp_path: Path
 ) -> None:
     notes = tmp_path / "robot.md"
@@ -68,7 +66,7 @@ def test_a_robot_is_a_toml_file(
         assert done.stderr == f"tangy: {notes} is no robot: a robot's file ends in .toml.\n"
 
 
-def test_a_microphone_without_a_screen_and_ways_to_listen_without_one_are_refused(
+def test_contradicting_microphone_options_are_refused(
     tangy: Callable[..., CompletedProcess[str]],
 ) -> None:
     for words, why in (

@@ -1,4 +1,4 @@
-"""A robot that is being switched on can be called off, from a screen and by a signal."""
+"""Cancelling the opening of a robot from a screen and by a signal."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WORLD = cast(LiveWorld, object())
 
 
 class Robot:
-    """Opens a robot that answers when it is let, and notes what becomes of it."""
+    """Opens a robot that answers when the test allows it, and records its states."""
 
     def __init__(self) -> None:
         self.did: list[str] = []
@@ -44,7 +44,7 @@ class Robot:
             self.did.append("is off")
 
 
-def test_one_that_answers_is_on_until_it_is_closed() -> None:
+def test_an_opened_robot_stays_open_until_it_is_closed() -> None:
     robot = Robot()
     robot.answers.set()
     one = SwitchingOn(robot)
@@ -56,7 +56,7 @@ def test_one_that_answers_is_on_until_it_is_closed() -> None:
     assert robot.did == ["begins", "is on", "is off"]
 
 
-def test_one_that_is_called_off_meanwhile_is_off() -> None:
+def test_a_cancelled_opening_closes_the_robot() -> None:
     robot = Robot()
     one = SwitchingOn(robot)
 
@@ -106,7 +106,7 @@ def signalled(number: int, when: Callable[[], object]) -> Iterator[None]:
     ("number", "status"),
     [(signal.SIGHUP, 129), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.slow)],
 )
-def test_a_signal_calls_it_off_without_a_screen(number: int, status: int) -> None:
+def test_a_signal_cancels_the_opening_without_a_screen(number: int, status: int) -> None:
     robot = Robot()
     before = signal.getsignal(number)
     with (
@@ -120,7 +120,7 @@ def test_a_signal_calls_it_off_without_a_screen(number: int, status: int) -> Non
     assert signal.getsignal(number) == before
 
 
-def test_ctrl_c_calls_it_off_without_a_screen() -> None:
+def test_ctrl_c_cancels_the_opening_without_a_screen() -> None:
     robot = Robot()
     with (
         pytest.raises(KeyboardInterrupt),
@@ -132,7 +132,7 @@ def test_ctrl_c_calls_it_off_without_a_screen() -> None:
 
 
 @pytest.mark.slow
-def test_a_signal_that_interrupts_no_wait_calls_it_off_as_well() -> None:
+def test_a_signal_outside_a_wait_cancels_the_opening() -> None:
     robot = Robot()
 
     def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
@@ -146,7 +146,7 @@ def test_a_signal_that_interrupts_no_wait_calls_it_off_as_well() -> None:
 
 
 @pytest.mark.usefixtures("hang_ups")
-def test_a_signal_in_a_game_switches_the_robot_off() -> None:
+def test_a_signal_in_a_game_closes_the_robot() -> None:
     robot = Robot()
     robot.answers.set()
     playing = threading.Event()
@@ -163,7 +163,7 @@ def test_a_signal_in_a_game_switches_the_robot_off() -> None:
     assert robot.did == ["begins", "is on", "is off"]
 
 
-def test_a_hang_up_that_is_to_be_ignored_is_ignored() -> None:
+def test_an_ignored_hangup_does_not_cancel() -> None:
     """As `nohup tangy live --bench --headless` has it."""
     robot = Robot()
     robot.answers.set()
@@ -175,7 +175,7 @@ def test_a_hang_up_that_is_to_be_ignored_is_ignored() -> None:
         signal.signal(signal.SIGHUP, before)
 
 
-def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cancelled_bench_ends_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         device_simulator, "CHILD", (sys.executable, "-c", "import time; time.sleep(60)")
     )
@@ -199,7 +199,7 @@ def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize(
     ("does", "how"), [("sys.exit(3)", "status 3"), ("print('x', flush=True); input()", "signal 9")]
 )
-def test_a_bench_that_does_not_begin_says_how_it_ended(
+def test_a_bench_that_cannot_start_reports_its_status(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, does: str, how: str
 ) -> None:
     monkeypatch.setattr(device_simulator, "CHILD", (sys.executable, "-c", "import sys; " + does))
@@ -226,7 +226,7 @@ def test_a_bench_that_does_not_answer_or_ends_is_an_error(monkeypatch: pytest.Mo
         bench.close()
 
 
-def test_no_bench_is_started_once_it_was_called_off(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_bench_starts_after_a_cancellation(monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[object] = []
     monkeypatch.setattr("subprocess.Popen", lambda *a, **b: started.append(a))
     cancellation = Cancellation()

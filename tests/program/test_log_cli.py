@@ -1,4 +1,4 @@
-"""`tangy log`: the games that were played, on the command line."""
+"""`tangy log`: played games on the command line."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_the_list_has_every_game_in_order(tangy: Tangy, played: Path) -> None:
     assert all(len(line) <= 80 for line in shown.splitlines())
 
 
-def test_staff_say_where_a_game_was_played(tangy: Tangy, played: Path) -> None:
+def test_staff_can_set_the_world_of_a_game(tangy: Tangy, played: Path) -> None:
     done = tangy("log", "world", 2, "bench", "--by", "Ada", "--data", played)
     assert (done.returncode, done.stdout) == (0, "Game 2 counts as a bench game.\n")
     games = json.loads(tangy("log", "list", "--json", "--data", played).stdout)
@@ -114,7 +114,7 @@ def test_no_number_of_games_wraps_the_list(
     assert any("17, 3 critical stopped" in line for line in shown)
 
 
-def test_a_game_is_told_step_by_step_with_its_faults_in_place(tangy: Tangy, played: Path) -> None:
+def test_a_game_is_shown_step_by_step_with_its_faults(tangy: Tangy, played: Path) -> None:
     document = json.loads(tangy("log", "show", 2, "--json", "--data", played).stdout)
     kinds = [moment["kind"] for moment in document["moments"]]
     assert kinds.count("step") == document["steps"]
@@ -150,7 +150,7 @@ def test_a_report_is_a_page_or_a_few_lines(tangy: Tangy, played: Path, tmp_path:
     assert "Wheels do not answer" in lines
 
 
-def test_the_id_begun_is_enough_and_a_day_is_a_session(tangy: Tangy, played: Path) -> None:
+def test_a_game_is_found_by_id_prefix_and_a_session_by_day(tangy: Tangy, played: Path) -> None:
     games = json.loads(tangy("log", "list", "--json", "--data", played).stdout)
     short = games[1]["id"][:8]
     found = json.loads(tangy("log", "show", short, "--json", "--data", played).stdout)
@@ -160,7 +160,7 @@ def test_the_id_begun_is_enough_and_a_day_is_a_session(tangy: Tangy, played: Pat
 
 
 @pytest.mark.parametrize("wrong", ["7", "nosuch", "al", "", "\x1b[2J", "0"])
-def test_a_wrong_game_is_one_sentence(tangy: Tangy, played: Path, wrong: str) -> None:
+def test_an_unknown_game_is_refused_in_one_sentence(tangy: Tangy, played: Path, wrong: str) -> None:
     for verb in ("show", "report"):
         done = tangy("log", verb, wrong, "--data", played)
         assert (done.returncode, done.stdout) == (2, "")
@@ -168,7 +168,7 @@ def test_a_wrong_game_is_one_sentence(tangy: Tangy, played: Path, wrong: str) ->
         assert done.stderr.strip().isprintable()
 
 
-def test_where_no_page_can_be_is_said_before_anything_is_read(
+def test_an_impossible_page_path_is_refused_first(
     tangy: Tangy, played: Path, tmp_path: Path
 ) -> None:
     for place in (tmp_path, tmp_path / "none" / "report.html"):
@@ -177,9 +177,7 @@ def test_where_no_page_can_be_is_said_before_anything_is_read(
         assert done.stderr.startswith(f"tangy: --html {place}: ")
 
 
-def test_a_game_of_an_activity_that_is_gone_is_still_listed(
-    tangy: Tangy, tmp_path: Path, played: Path
-) -> None:
+def test_a_game_of_a_missing_activity_is_listed(tangy: Tangy, tmp_path: Path, played: Path) -> None:
     with Store.open(played) as store:
         begun = next(store.events("game begun")).body
         append_body(store, "game begun", {**begun, "game": "feedfacefeed", "activity": "whist"})
@@ -193,7 +191,7 @@ def test_a_game_of_an_activity_that_is_gone_is_still_listed(
     assert (done.returncode, "played was whist" in done.stderr) == (2, True)
 
 
-def test_a_game_of_a_file_is_shown_with_what_that_file_says(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_game_of_an_activity_file_is_shown_in_its_words(tangy: Tangy, tmp_path: Path) -> None:
     data, shipped = tmp_path / "data", shipped_activities()["memory"]
     own = tmp_path / "mine.toml"
     own.write_text(shipped.read_text().replace('name = "memory"', 'name = "mine"'))
@@ -208,7 +206,7 @@ def test_a_game_of_a_file_is_shown_with_what_that_file_says(tangy: Tangy, tmp_pa
     assert "cannot find the file" in tangy("log", "show", "last", "--data", data).stderr
 
 
-def test_nobody_is_told_by_a_name_that_was_changed(tangy: Tangy, played: Path) -> None:
+def test_reports_use_the_current_names(tangy: Tangy, played: Path) -> None:
     tangy("people", "rename", "user1", "Rosa", "--data", played)
     document = json.loads(tangy("log", "report", "all", "--json", "--data", played).stdout)
     assert document["people"][0]["name"] == "Rosa"

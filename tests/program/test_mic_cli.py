@@ -1,4 +1,4 @@
-"""`tangy mic` is explained where it is looked for: for Linux, for macOS, and what it does."""
+"""`tangy mic`: its help for Linux and macOS, and its message on a terminal."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_help_has_a_command_to_copy_for_each_system(
 
 
 class Terminal(io.StringIO):
-    """Standard input that nobody has sent anything into."""
+    """Standard input without data."""
 
     def isatty(self) -> bool:
         return True
@@ -45,7 +45,7 @@ class Terminal(io.StringIO):
         (Path("mine"), Path("my.sock"), " --data mine --socket my.sock"),
     ],
 )
-def test_a_terminal_is_told_what_to_type_on_the_laptop(
+def test_a_terminal_as_input_prints_the_commands_for_the_laptop(
     data: Path | None,
     socket: Path | None,
     options: str,

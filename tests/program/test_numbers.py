@@ -24,7 +24,7 @@ def test_a_noun_can_have_a_plural_of_its_own() -> None:
     assert [counted(n, "entry", "entries") for n in (1, 2)] == ["1 entry", "2 entries"]
 
 
-def test_places_in_an_order_are_said_as_people_say_them() -> None:
+def test_ordinals_are_worded() -> None:
     said = [ordinal(number) for number in (1, 2, 3, 4, 11, 12, 21, 22, 113)]
     assert said == ["first", "second", "third", "4th", "11th", "12th", "21st", "22nd", "113th"]
 
@@ -33,7 +33,7 @@ def test_places_in_an_order_are_said_as_people_say_them() -> None:
     ("things", "words"),
     [((), ""), ((1,), "1"), ((1, 2), "1 and 2"), (("A", "B", "C"), "A, B and C")],
 )
-def test_a_list_is_said_as_people_say_it(things: tuple[object, ...], words: str) -> None:
+def test_lists_are_joined_in_words(things: tuple[object, ...], words: str) -> None:
     assert listed(things) == words
 
 

@@ -1,4 +1,4 @@
-"""The recorder that holds refactorings to their word: what it hides, and what it never does."""
+"""The recorder for refactorings: what it normalises, and what it compares."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def _recorded(folder: Path, name: str, text: str) -> Path:
     return folder
 
 
-def test_two_runs_that_differ_only_in_ids_and_times_are_recorded_alike() -> None:
+def test_runs_that_differ_only_in_ids_and_times_are_recorded_alike() -> None:
     def run(first: str, second: str, at: str) -> str:
         return Names().document(f'{{"a": "{first}", "b": ["{second}", "{first}"], "at": "{at}"}}')
 
@@ -24,17 +24,17 @@ def test_two_runs_that_differ_only_in_ids_and_times_are_recorded_alike() -> None
     assert one == two
 
 
-def test_an_id_in_another_place_is_a_difference() -> None:
+def test_an_id_at_another_place_is_a_difference() -> None:
     ids = [str(uuid4()) for _ in range(2)]
     assert Names().text(" ".join([*ids, ids[0]])) != Names().text(" ".join([*ids, ids[1]]))
 
 
-def test_a_digest_a_number_and_a_word_are_never_hidden() -> None:
+def test_digests_numbers_and_words_are_never_hidden() -> None:
     kept = f"digest {'0f' * 32}, 19 responses, share 0.25, call number"
     assert Names().text(kept) == kept
 
 
-def test_every_file_that_differs_or_is_missing_is_named(tmp_path: Path) -> None:
+def test_every_different_or_missing_file_is_named(tmp_path: Path) -> None:
     before, after = tmp_path / "before", tmp_path / "after"
     for name, old, new in (("same", "x", "x"), ("changed", "one\ntwo", "one\n2")):
         _recorded(before, f"{name}.txt", old)

@@ -1,4 +1,4 @@
-"""`tangy people`: what works with whom, in words and as JSON, and what staff say afterwards."""
+"""`tangy people`: what works with each person, in words and as JSON, and feedback by staff."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def counts(done: CompletedProcess[str], strategy: str) -> tuple[int, int]:
 # ------------------------------------------------------------------------------ what is told
 
 
-def test_a_person_is_shown_with_all_that_is_believed(people: Tangy) -> None:
+def test_a_person_is_shown_with_every_posterior(people: Tangy) -> None:
     shown = document(people("show", "rosa", "--json"))
     assert (shown["id"], shown["name"]) == ("user1", "Rosa")
     praise = shown["beliefs"]["praise"]
@@ -83,7 +83,7 @@ def test_a_person_is_shown_with_all_that_is_believed(people: Tangy) -> None:
     assert [entry["number"] for entry in game["responses"]] == list(range(1, 18))
 
 
-def test_in_words_it_is_what_a_nurse_would_say(people: Tangy) -> None:
+def test_the_list_describes_people_in_words(people: Tangy) -> None:
     told = people("list").stdout
     assert "user1: praise works with Rosa: 7 of 9, last seen 3 weeks ago" in told
     assert "user2: nothing is known of User 2 yet, last seen 3 weeks ago" in told
@@ -94,32 +94,32 @@ def test_in_words_it_is_what_a_nurse_would_say(people: Tangy) -> None:
     assert "no response yet" in people("history", "Rosa").stdout
 
 
-def test_without_a_verb_the_people_are_listed(people: Tangy) -> None:
+def test_the_list_is_the_default_verb(people: Tangy) -> None:
     assert people().stdout == people("list").stdout
     assert document(people("--json")) == document(people("list", "--json"))
 
 
-def test_what_stands_in_the_tables_is_explained_below_them(people: Tangy) -> None:
+def test_the_columns_are_explained_below_the_tables(people: Tangy) -> None:
     best = "P(best): probability of being the best of those on. "
     assert f"\n{best}*: the most probable one.\nuser1: " in people("list").stdout
     assert f"\n{best}settled: at least 0.9.\npraise works " in people("show", "Rosa").stdout
 
 
-def test_the_star_stands_where_one_alone_leads(people: Tangy) -> None:
+def test_the_star_marks_a_single_leading_strategy(people: Tangy) -> None:
     rows = {line.split()[0]: line for line in people("list").stdout.splitlines() if "/" in line}
     assert "7/9 (0.9" in rows["Rosa"]
     assert rows["Rosa"].count("*") == 1
     assert "*" not in rows["User"], "of whom nothing is known"
 
 
-def test_an_activity_of_ones_own_has_its_own_strategies(people: Tangy) -> None:
+def test_a_custom_activity_has_its_own_strategies(people: Tangy) -> None:
     shown = document(people("show", "user1", "--activity", LANTERNS, "--json"))
     assert set(shown["beliefs"]) == {"quiet", "merry"}
     switched = people("switch", "user1", "merry", "off", "--activity", LANTERNS, "--json")
     assert document(switched)["beliefs"]["merry"]["on"] is False
 
 
-def test_nothing_is_written_by_looking(tangy: Tangy, tmp_path: Path) -> None:
+def test_reading_commands_write_nothing(tangy: Tangy, tmp_path: Path) -> None:
     for verb in (("list",), ("show", "user1"), ("history", "user1")):
         assert tangy("people", *verb, "--data", tmp_path / "none").returncode == 0
     assert not (tmp_path / "none").exists()
@@ -128,7 +128,7 @@ def test_nothing_is_written_by_looking(tangy: Tangy, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "words", [("--data", "DATA", "people", "list"), ("people", "--data", "DATA", "list")]
 )
-def test_options_before_a_verb_are_the_verbs(
+def test_options_before_a_verb_apply_to_the_verb(
     tangy: Tangy, data: Path, words: tuple[str, ...]
 ) -> None:
     after = tangy("people", "list", "--data", data)
@@ -136,7 +136,7 @@ def test_options_before_a_verb_are_the_verbs(
     assert before.stdout == after.stdout and "Rosa" in after.stdout
 
 
-def test_an_option_after_a_verb_counts_more_than_one_before_it(
+def test_an_option_after_a_verb_overrides_one_before_it(
     tangy: Tangy, data: Path, tmp_path: Path
 ) -> None:
     after = tangy("people", "--data", tmp_path / "none", "list", "--data", data)
@@ -147,7 +147,7 @@ def test_an_option_after_a_verb_counts_more_than_one_before_it(
 
 
 @pytest.mark.slow
-def test_a_response_is_void_by_its_number_and_counts_again_after_undo(people: Tangy) -> None:
+def test_a_response_is_voided_by_number_and_restored_by_undo(people: Tangy) -> None:
     assert counts(people("void", "Rosa", 1, "--why", "she slept", "--json"), "praise") == (6, 8)
     history = document(people("history", "Rosa", "--json"))
     assert (history[0]["void"], history[0]["why"]) == (True, "she slept")
@@ -156,7 +156,7 @@ def test_a_response_is_void_by_its_number_and_counts_again_after_undo(people: Ta
     assert counts(people("undo", "Rosa", "--json"), "praise") == (7, 9)
 
 
-def test_it_is_said_what_is_void_and_what_was_said(people: Tangy) -> None:
+def test_void_prints_the_response_and_the_reason(people: Tangy) -> None:
     last, first = people("void", "Rosa").stdout, people("void", "Rosa", 1).stdout
     when = r"\d+ \w+ \d{4} \d\d:\d\d"
     assert re.match(rf"Void: number 16, scarcity, {when}, would rather not\.\nNow: ", last)
@@ -165,28 +165,26 @@ def test_it_is_said_what_is_void_and_what_was_said(people: Tangy) -> None:
     assert re.match(rf"Said: number 18, suggestion, {when}, did it, said later\.\nNow: ", said)
 
 
-def test_a_reason_of_undecodable_bytes_is_kept_and_shown_all_the_same(people: Tangy) -> None:
+def test_a_reason_with_undecodable_bytes_is_stored_and_shown(people: Tangy) -> None:
     assert people("void", "Rosa", 1, "--why", "sl\udcffept").returncode == 0
     history = document(people("history", "Rosa", "--json"))
     assert history[0]["why"] == "sl\N{REPLACEMENT CHARACTER}ept"
 
 
-def test_undo_says_what_it_takes_back(people: Tangy) -> None:
+def test_the_help_of_undo_lists_what_it_reverts(people: Tangy) -> None:
     told = " ".join(people("undo", "--help").stdout.split())
     assert "Undo the last void, feedback, switch or method." in told
     assert "A new name is not undone: rename the person again." in told
 
 
-def test_undecodable_bytes_are_replaced_in_every_name_that_is_kept(
-    tangy: Tangy, taught: Path
-) -> None:
+def test_undecodable_bytes_are_replaced_in_stored_names(tangy: Tangy, taught: Path) -> None:
     learnt = tangy("learn", "--name", "a\udcffb", "--data", taught)
     assert (learnt.returncode, learnt.stderr) == (0, "")
     shown = tangy("policy", "--data", taught, "--json")
     assert document(shown)["name"] == "a\N{REPLACEMENT CHARACTER}b"
 
 
-def test_a_request_that_waits_is_answered_once(people: Tangy) -> None:
+def test_a_pending_request_is_answered_once(people: Tangy) -> None:
     answered = people("feedback", "Rosa", "suggestion", "yes", "--json")
     assert counts(answered, "suggestion") == (1, 3)
     again = people("feedback", "Rosa", "suggestion", "no")
@@ -197,14 +195,14 @@ def test_a_request_that_waits_is_answered_once(people: Tangy) -> None:
     assert "has its answer already, and none counts twice" in numbered.stderr
 
 
-def test_what_staff_saw_for_themselves_counts_when_they_say_so(people: Tangy) -> None:
+def test_feedback_without_a_request_needs_the_option_seen(people: Tangy) -> None:
     assert people("feedback", "Rosa", "praise", "yes").returncode == 2
     seen = people("feedback", "Rosa", "praise", "yes", "--seen", "--json")
     assert counts(seen, "praise") == (8, 10)
     assert document(seen)["games"][-1]["game"] is None
 
 
-def test_a_strategy_is_off_until_it_is_on(people: Tangy) -> None:
+def test_a_strategy_is_switched_off_and_on(people: Tangy) -> None:
     shown = document(people("switch", "Rosa", "praise", "off", "--json"))
     assert shown["beliefs"]["praise"]["on"] is False
     assert shown["beliefs"]["praise"]["p_best"] == 0
@@ -216,7 +214,7 @@ def test_a_strategy_is_off_until_it_is_on(people: Tangy) -> None:
     assert document(people("switch", "Rosa", "praise", "on", "--json"))["settled"] == "praise"
 
 
-def test_a_method_of_ones_own_is_chosen_in_words(people: Tangy) -> None:
+def test_a_method_for_a_person_is_chosen_in_words(people: Tangy) -> None:
     chosen = document(people("method", "user2", "bayes-ucb", "people", "0.98", "--json"))
     assert chosen["method"] == {
         "method": "bayes-ucb", "prior": "people", "forgetting": 0.98,
@@ -230,7 +228,7 @@ def test_a_method_of_ones_own_is_chosen_in_words(people: Tangy) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
+def test_unnamed_parts_of_a_method_stay_unchanged(people: Tangy) -> None:
     people("method", "Rosa", "bayes-ucb")
     told = people("method", "Rosa", "0.98", "day").stdout
     assert "Method: Bayes-UCB, forgetting 2% a day (for this person)." in told
@@ -261,7 +259,7 @@ def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
         (("show", "Rosa", "--activity", "bingoo"), "did you mean 'bingo'?"),
     ],
 )
-def test_bad_input_is_one_sentence_with_the_nearest_word(
+def test_bad_input_is_refused_in_one_sentence_with_a_suggestion(
     arguments: tuple[object, ...], said: str, people: Tangy
 ) -> None:
     done = people(*arguments)
@@ -271,7 +269,7 @@ def test_bad_input_is_one_sentence_with_the_nearest_word(
 
 
 @pytest.mark.slow
-def test_a_person_with_a_method_of_their_own_is_played_with_it(tangy: Tangy, taught: Path) -> None:
+def test_games_use_the_method_of_each_person(tangy: Tangy, taught: Path) -> None:
     about = ("--data", taught, "--json")
     for strategy in ("praise", "scarcity", "suggestion"):
         tangy("people", "switch", "user2", strategy, "off", "--data", taught)
@@ -287,7 +285,7 @@ def test_a_person_with_a_method_of_their_own_is_played_with_it(tangy: Tangy, tau
         assert belief["trials"] >= alpha + beta - 2 - 1e-9
 
 
-def test_how_long_ago_is_said_as_people_say_it() -> None:
+def test_past_times_are_worded() -> None:
     now = datetime(2026, 5, 22, 12, tzinfo=UTC)
     said = {
         0: "today", 1: "yesterday", 2: "2 days ago", 13: "13 days ago", 14: "2 weeks ago",

@@ -1,4 +1,4 @@
-"""`tangy people forget`: it asks first, and afterwards nothing in the data folder has the name."""
+"""`tangy people forget`: a confirmation, and the erasure of the name from the data folder."""
 
 from __future__ import annotations
 
@@ -71,7 +71,9 @@ def bytes_of(folder: Path) -> bytes:
     return b"\n".join(path.read_bytes() for path in folder.rglob("*") if path.is_file())
 
 
-def test_after_forgetting_no_byte_of_the_data_folder_has_the_name(tangy: Tangy, data: Path) -> None:
+def test_forgetting_erases_the_name_from_every_byte_of_the_data_folder(
+    tangy: Tangy, data: Path
+) -> None:
     assert bytes_of(data).lower().count(b"xanthippe") >= 9
     with Store.open(data, write=False) as store:
         before = [(e.seq, e.uuid, e.at, e.kind, e.person, e.complied) for e in store.events()]
@@ -94,7 +96,7 @@ def test_after_forgetting_no_byte_of_the_data_folder_has_the_name(tangy: Tangy, 
             store.file.db.execute("UPDATE event SET body = '{}'")
 
 
-def test_files_that_tangy_did_not_write_stay_and_are_named(tangy: Tangy, data: Path) -> None:
+def test_foreign_files_with_the_name_are_kept_and_listed(tangy: Tangy, data: Path) -> None:
     (data / "sub").mkdir()
     others = {
         data / "diary.txt": f"Lunch with {NAME} on Friday.",
@@ -112,7 +114,7 @@ def test_files_that_tangy_did_not_write_stay_and_are_named(tangy: Tangy, data: P
     assert len(told["files_changed"]) == 3
 
 
-def test_a_misspelt_name_goes_from_copies_of_the_log_as_well(tangy: Tangy, tmp_path: Path) -> None:
+def test_a_misspelt_name_is_erased_from_copies_of_the_log(tangy: Tangy, tmp_path: Path) -> None:
     folder = tmp_path / "mine"
     with Store.open(folder) as store:
         store.rename("user2", "Renée")
@@ -130,16 +132,14 @@ def test_a_misspelt_name_goes_from_copies_of_the_log_as_well(tangy: Tangy, tmp_p
         assert db.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
 
 
-def test_while_another_program_writes_nothing_is_half_forgotten(tangy: Tangy, data: Path) -> None:
+def test_forgetting_beside_a_writer_changes_nothing(tangy: Tangy, data: Path) -> None:
     with Store.open(data):
         done = tangy("people", "forget", NAME, "--yes", "--data", data)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert NAME in (data / "robot.log").read_text()
 
 
-def test_while_another_program_reads_it_says_that_it_has_to_be_done_again(
-    tangy: Tangy, data: Path
-) -> None:
+def test_forgetting_beside_a_reader_asks_for_a_repeat(tangy: Tangy, data: Path) -> None:
     with closing(sqlite3.connect(data / "tangy.db")) as db:
         db.execute("BEGIN")
         db.execute("SELECT * FROM event").fetchone()
@@ -151,7 +151,7 @@ def test_while_another_program_reads_it_says_that_it_has_to_be_done_again(
     assert b"xanthippe" not in left
 
 
-def test_an_earlier_name_goes_with_also(tangy: Tangy, data: Path) -> None:
+def test_also_erases_an_earlier_name(tangy: Tangy, data: Path) -> None:
     with Store.open(data) as store:
         store.rename("user2", "Rosa")
     done = tangy("people", "forget", "Rosa", "--also", NAME, "--yes", "--data", data)
@@ -160,7 +160,7 @@ def test_an_earlier_name_goes_with_also(tangy: Tangy, data: Path) -> None:
     assert b"xanthippe" not in left and b"rosa" not in left
 
 
-def test_somebody_called_mark_takes_no_word_along(tangy: Tangy, tmp_path: Path) -> None:
+def test_forgetting_mark_keeps_the_word_mark(tangy: Tangy, tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.rename("user2", "Mark")
     teach(tmp_path, "greet everyone", "go to mark")
@@ -177,7 +177,7 @@ def test_somebody_called_mark_takes_no_word_along(tangy: Tangy, tmp_path: Path) 
     assert behaviours[-1] == "mark numbers"
 
 
-def test_a_teacher_of_that_name_stays_and_it_says_so(tangy: Tangy, data: Path) -> None:
+def test_a_teacher_of_the_same_name_is_kept_and_reported(tangy: Tangy, data: Path) -> None:
     with Store.open(data) as store:
         store.rename("user2", "Ada")
     done = tangy("people", "forget", "Ada", "--yes", "--data", data)
@@ -187,7 +187,7 @@ def test_a_teacher_of_that_name_stays_and_it_says_so(tangy: Tangy, data: Path) -
     assert begun is not None and begun.body["teacher"] == "Ada"
 
 
-def test_without_a_terminal_it_does_not_forget_unasked(tangy: Tangy, data: Path) -> None:
+def test_forgetting_without_a_terminal_needs_the_option_yes(tangy: Tangy, data: Path) -> None:
     done = tangy("people", "forget", NAME, "--data", data)
     assert (done.returncode, done.stdout) == (2, "")
     assert "--yes" in done.stderr and "cannot be taken back" in done.stderr
@@ -198,7 +198,7 @@ def test_without_a_terminal_it_does_not_forget_unasked(tangy: Tangy, data: Path)
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("answer", "status", "there"), [("n", 1, True), ("y", 0, False)])
-def test_on_a_terminal_it_says_what_goes_and_waits_for_a_yes(
+def test_forgetting_on_a_terminal_needs_a_confirmation(
     data: Path, answer: str, status: int, there: bool
 ) -> None:
     ours, theirs = pty.openpty()
@@ -238,9 +238,7 @@ def test_a_teachers_name_has_the_limits_of_other_names(
 
 
 @pytest.mark.slow
-def test_a_first_name_alone_goes_from_what_was_typed_for_that_person(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_a_first_name_is_erased_from_commands_for_that_person(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "mine")
     assert tangy("people", "rename", "user1", "Rosa Weber", *data).returncode == 0
     typed = "greet everyone\ny\ncall number\ny\ngo to rosa\ny\ngo to frau weber\ny\n"

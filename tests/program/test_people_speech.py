@@ -1,4 +1,4 @@
-"""`tangy people pronounce` and `voice`, `tangy activity phrases` and `hear`: what is said how."""
+"""`tangy people pronounce` and `voice`, `tangy activity phrases` and `hear`."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ def spoken(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, VoicePreference |
 
 
 class TestNames:
-    def test_a_name_in_the_dictionary_is_heard_at_once(self, tangy: Tangy, data: Path) -> None:
+    def test_a_name_in_the_dictionary_is_recognised_at_once(self, tangy: Tangy, data: Path) -> None:
         done = tangy("people", "pronounce", "Rosa", "--data", data)
         assert done.stdout == "Rosa is said R OW Z AH, as in the dictionary.\n"
 
     @pytest.mark.slow
-    def test_a_new_name_is_accepted_heard_or_changed(
+    def test_a_new_pronunciation_is_accepted_played_or_changed(
         self, tangy: Tangy, data: Path, spoken: list[tuple[str, VoicePreference | None]]
     ) -> None:
         shown = tangy("people", "rename", "user3", "Xanthippus", "--data", data).stdout
@@ -74,7 +74,7 @@ class TestNames:
         assert tangy(*asked, "--forget", "--json", "--data", data).stdout.count("suggested") == 1
 
     @pytest.mark.slow
-    def test_what_to_type_next_has_the_options_that_were_given(
+    def test_the_suggested_command_repeats_the_given_options(
         self, tangy: Tangy, tmp_path: Path
     ) -> None:
         folder = tmp_path / "two words"
@@ -95,7 +95,7 @@ class TestNames:
             (("nobody",), "There is nobody called"),
         ],
     )
-    def test_what_is_no_pronunciation_changes_nothing(
+    def test_an_invalid_pronunciation_changes_nothing(
         self, tangy: Tangy, data: Path, arguments: tuple[str, ...], told: str
     ) -> None:
         done = tangy("people", "pronounce", *arguments, "--data", data)
@@ -105,7 +105,7 @@ class TestNames:
         with Store.open(data, write=False) as store:
             assert store.pronunciations() == {}
 
-    def test_it_is_kept_apart_from_the_log_and_forgotten_with_the_name(
+    def test_a_pronunciation_is_stored_apart_and_forgotten_with_the_name(
         self, tangy: Tangy, data: Path
     ) -> None:
         tangy("people", "pronounce", "user2", "Z AE N TH OY, L IY", "--data", data)
@@ -119,7 +119,7 @@ class TestNames:
         for path in data.iterdir():
             assert b"TH OY" not in path.read_bytes()
 
-    def test_a_person_who_may_only_be_read_changes_nothing(self, tangy: Tangy, data: Path) -> None:
+    def test_showing_a_pronunciation_writes_nothing(self, tangy: Tangy, data: Path) -> None:
         before = (data / "tangy.db").read_bytes()
         tangy("people", "pronounce", "Rosa", "--data", data)
         tangy("people", "voice", "Rosa", "--data", data)
@@ -128,7 +128,7 @@ class TestNames:
 
 class TestNamesThatSoundAlike:
     @pytest.mark.slow
-    def test_a_pronunciation_that_is_anothers_is_refused(self, tangy: Tangy, data: Path) -> None:
+    def test_a_pronunciation_of_another_person_is_refused(self, tangy: Tangy, data: Path) -> None:
         tangy("people", "rename", "user2", "Xanthippe", "--data", data)
         tangy("people", "rename", "user4", "Xantippe", "--data", data)
         accepted = tangy("people", "pronounce", "user4", "--accept", "--json", "--data", data)
@@ -149,7 +149,7 @@ class TestNamesThatSoundAlike:
         assert "Rosa sounds like 'stop'" in done.stderr
 
     @pytest.mark.slow
-    def test_a_new_name_that_sounds_like_anothers_is_taken_and_told_of(
+    def test_a_new_name_that_sounds_like_another_is_accepted_with_a_warning(
         self, tangy: Tangy, data: Path
     ) -> None:
         tangy("people", "rename", "user3", "Ann", "--data", data)
@@ -168,7 +168,7 @@ class TestNamesThatSoundAlike:
         assert json.loads(again.stdout)["sounds_like"] == "Ann (user3)"
 
     @pytest.mark.slow
-    def test_what_is_suggested_for_a_name_is_not_offered_if_it_is_anothers(
+    def test_a_suggested_pronunciation_of_another_person_is_not_offered(
         self, tangy: Tangy, data: Path
     ) -> None:
         suggested = tangy("people", "rename", "user3", "Xanthippe", "--json", "--data", data)
@@ -198,7 +198,7 @@ class TestNamesThatSoundAlike:
             ("User 2", "is another way to call user2"),
         ],
     )
-    def test_a_name_that_means_something_else_is_refused(
+    def test_a_name_with_another_meaning_is_refused(
         self, name: str, why: str, tangy: Tangy, data: Path
     ) -> None:
         done = tangy("people", "rename", "user1", name, "--data", data)
@@ -209,12 +209,12 @@ class TestNamesThatSoundAlike:
             assert store.names()["user1"] == "Rosa"
 
     @pytest.mark.parametrize("name", ["Rosa", "User 1", "Noemi", "Joe King", "李雷", "Callum"])
-    def test_other_names_are_names(self, name: str, tangy: Tangy, data: Path) -> None:
+    def test_other_names_are_accepted(self, name: str, tangy: Tangy, data: Path) -> None:
         assert tangy("people", "rename", "user1", name, "--data", data).returncode == 0
 
 
 class TestVoices:
-    def test_rate_and_voice_are_chosen_one_by_one_and_taken_back(
+    def test_rate_and_voice_are_set_and_reset_separately(
         self, tangy: Tangy, data: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setenv("PATH", "")  # so that espeak-ng is not asked which voices there are
@@ -238,7 +238,7 @@ class TestVoices:
             (("--rate", "100", "--usual"), "Choose one"),
         ],
     )
-    def test_what_cannot_be_spoken_is_refused(
+    def test_an_invalid_voice_preference_is_refused(
         self, tangy: Tangy, data: Path, options: tuple[str, ...], told: str
     ) -> None:
         done = tangy("people", "voice", "Rosa", *options, "--data", data)
@@ -247,7 +247,7 @@ class TestVoices:
 
 
 class TestTheWorkspace:
-    def test_teaching_goes_to_seats_and_hears_names(self, data: Path) -> None:
+    def test_teaching_uses_seats_and_pronounced_names(self, data: Path) -> None:
         workspace = Workspace(data)
         workspace.pronounce(workspace.find_person("user2"), "Z AE N, L IY")
         teaching = workspace.teaching("somebody", 1)
@@ -262,7 +262,7 @@ class TestTheWorkspace:
 
 
 class TestThePhrasebook:
-    def test_the_page_has_all_of_it(self, tangy: Tangy, data: Path) -> None:
+    def test_the_page_lists_phrases_people_and_words(self, tangy: Tangy, data: Path) -> None:
         text = tangy("activity", "phrases", "--data", data).stdout
         for words in ("greet everyone", "user 1, rosa, seat 1", "R OW Z AH", "Cannot be heard"):
             assert words in text
@@ -277,7 +277,7 @@ class TestThePhrasebook:
         assert "sing them in" in text
         assert "greet" not in text
 
-    def test_words_and_phones_are_heard_and_printed(
+    def test_words_and_phones_are_played_and_printed(
         self, tangy: Tangy, spoken: list[tuple[str, VoicePreference | None]]
     ) -> None:
         assert tangy("activity", "hear", "bingo").stdout == "B IH NG G OW\n"
@@ -288,7 +288,7 @@ class TestThePhrasebook:
         done = tangy("activity", "hear", "JH Q")
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
 
-    def test_without_a_voice_the_phones_are_printed_and_the_reason_told(
+    def test_a_missing_voice_prints_the_phones_and_the_reason(
         self, tangy: Tangy, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setenv("PATH", "")

@@ -1,4 +1,4 @@
-"""What is said of a person is true, however little is known and whatever is switched off."""
+"""The sentences about a person with few data and with disabled strategies."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def noted(tmp_path: Path) -> Callable[..., Record]:
     return note
 
 
-def test_of_one_strategy_that_alone_is_on_nothing_is_said_to_be_best(
+def test_a_single_enabled_strategy_is_not_called_best(
     noted: Callable[..., Record],
 ) -> None:
     record = noted({"suggestion": (0, 1)}, ("neutral", "praise", "scarcity"))
@@ -61,7 +61,7 @@ def test_of_one_strategy_that_alone_is_on_nothing_is_said_to_be_best(
     assert record.settled is record.leading is None
 
 
-def test_an_activity_with_one_strategy_has_none_that_is_settled(
+def test_the_only_strategy_of_an_activity_is_never_settled(
     noted: Callable[..., Record],
 ) -> None:
     record = noted({"quiet": (8, 1)}, strategies=("quiet",))
@@ -79,7 +79,7 @@ def test_an_activity_with_one_strategy_has_none_that_is_settled(
          "praise works with Rosa: 9 of 10"),
     ],
 )  # fmt: skip
-def test_what_never_worked_is_not_said_to_work(
+def test_an_unsuccessful_strategy_is_not_said_to_work(
     counts: Counts, said: str, noted: Callable[..., Record]
 ) -> None:
     record = noted(counts)
@@ -91,7 +91,7 @@ def test_what_never_worked_is_not_said_to_work(
     st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), min_size=1, max_size=4),
     st.sets(st.sampled_from(NAMES)),
 )
-def test_it_works_only_where_somebody_complied_and_there_was_a_choice(
+def test_a_strategy_works_only_after_compliance_and_with_a_choice(
     counts: list[tuple[int, int]], off: set[str]
 ) -> None:
     beliefs = {n: Beta(1 + yes, 1 + no) for n, (yes, no) in zip(NAMES, counts, strict=False)}

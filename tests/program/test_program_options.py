@@ -1,4 +1,4 @@
-"""`tangy` with its own options alone opens the program as the option parser would open it."""
+"""`tangy` with only its own options opens the program as the option parser would."""
 
 from __future__ import annotations
 
@@ -50,5 +50,5 @@ def test_both_ways_open_the_same_program(
 @pytest.mark.parametrize(
     "words", [["--data"], ["--data", "--ascii"], ["--dat", "x"], ["teach"], ["--help"], ["--data="]]
 )
-def test_the_rest_is_left_to_the_option_parser(words: list[str]) -> None:
+def test_other_options_are_left_to_the_option_parser(words: list[str]) -> None:
     assert cli.program_options(words) is None

@@ -1,4 +1,4 @@
-"""What CONTRIBUTING.md says of adding a thing, carried out on a copy of the sources."""
+"""The recipes of CONTRIBUTING.md, carried out on a copy of the sources."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def places(title: str, *named: str) -> None:
     assert not missing, f"CONTRIBUTING.md, {title!r}, does not name {missing}"
 
 
-def test_an_activity_is_a_file_of_ones_own(copy: Path, tmp_path: Path) -> None:
+def test_the_recipe_for_an_activity_works(copy: Path, tmp_path: Path) -> None:
     source = "profiles/tangy_profiles/activities/bingo.toml"
     places("Add an activity", source, "tangy activity check FILE")
     mine = tmp_path / "mine.toml"
@@ -45,7 +45,7 @@ def test_an_activity_is_a_file_of_ones_own(copy: Path, tmp_path: Path) -> None:
     assert all(word in checked.stderr for word in ("mine.toml", "effect", "drow", "draw"))
 
 
-def test_a_fault_is_a_rule_and_a_kind_that_brings_it_about(copy: Path, taught: Path) -> None:
+def test_the_recipe_for_a_fault_works(copy: Path, taught: Path) -> None:
     rules, kinds = "profiles/tangy_profiles/faults.toml", "sim/tangy_sim/worlds/injection.py"
     robot, well = "profiles/tangy_profiles/robots/tangy.toml", "sim/tangy_sim/worlds/devices.py"
     places("Add a fault", rules, kinds, robot, well, "`KINDS`", "`READINGS`")
@@ -88,7 +88,7 @@ code = "arm-failed\"""",
     assert document["finished"] == 1
 
 
-def test_a_method_of_persuasion_is_a_class_and_a_name(copy: Path, taught: Path) -> None:
+def test_the_recipe_for_a_method_of_persuasion_works(copy: Path, taught: Path) -> None:
     methods, names = "tangy_tui/interaction/methods.py", "profiles/tangy_profiles/persuading.py"
     words = "tangy_tui/text/people.py"
     places("Add a method of persuasion", methods, names, words, "`METHODS`", "`_plain`")
@@ -117,7 +117,7 @@ class BayesUcb(Plain):""",
     assert "each in turn" in shown.stdout
 
 
-def test_a_kind_of_event_is_a_record_that_is_written_and_read(copy: Path) -> None:
+def test_the_recipe_for_a_kind_of_event_works(copy: Path) -> None:
     records = "profiles/tangy_profiles/people_records.py"
     places(
         "Add a kind of event", "people_records.py", "tests/support/every_kind.py", "test_events.py"
@@ -144,7 +144,7 @@ def test_a_kind_of_event_is_a_record_that_is_written_and_read(copy: Path) -> Non
     assert done.returncode == 0, done.stdout
 
 
-def test_mypy_names_each_place_that_was_forgotten(copy: Path) -> None:
+def test_mypy_names_each_place_that_lacks_a_new_effect(copy: Path) -> None:
     places("Add an effect of behaviours", "profiles/tangy_profiles/effects.py", "world.py")
     edit(
         copy / "profiles/tangy_profiles/effects.py",
@@ -166,7 +166,7 @@ def test_mypy_names_each_place_that_was_forgotten(copy: Path) -> None:
         assert any(forgotten in line for line in lines), f"{where}: {forgotten}\n{checked.stdout}"
 
 
-def test_a_panel_is_a_widget_and_a_line_in_a_screen(copy: Path, taught: Path) -> None:
+def test_the_recipe_for_a_panel_works(copy: Path, taught: Path) -> None:
     places("Add a panel", "tangy_tui/ui/widgets/", "tangy_tui/ui/panels.py", "`compose`")
     (copy / "tangy_tui/ui/widgets/hello_panel.py").write_text(
         '''"""A panel."""

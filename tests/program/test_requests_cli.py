@@ -1,4 +1,4 @@
-"""`tangy requests`: what is refused, what is shown of signs in pictures."""
+"""`tangy requests`: signs in pictures, and refusals."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TABLE = ",".join(f"{x:g},{y:g}" for x, y in CORNERS)
 
 
 @pytest.mark.slow
-def test_signs_in_pictures_are_shown_with_who_sits_there(tangy: Tangy, tmp_path: Path) -> None:
+def test_signs_in_pictures_are_listed_with_their_people(tangy: Tangy, tmp_path: Path) -> None:
     seed = next(seed for seed in range(9_000, 9_100) if len(next(sequence(seed, 1)).asking) == 1)
     scenes = list(sequence(seed, 8))
     for number, scene in enumerate(scenes):
@@ -43,12 +43,12 @@ def test_signs_in_pictures_are_shown_with_who_sits_there(tangy: Tangy, tmp_path:
         ("signs:0", "--table", "0,0,1,1,2,2,3,3"),
     ],
 )
-def test_bad_input_is_refused_in_a_sentence(options: list[str], tangy: Tangy) -> None:
+def test_bad_input_is_refused_in_one_sentence(options: list[str], tangy: Tangy) -> None:
     done = tangy("requests", *options)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
 
 
-def test_a_broker_that_is_not_there_fails(tangy: Tangy) -> None:
+def test_a_missing_broker_fails(tangy: Tangy) -> None:
     done = tangy("requests", "mqtt://127.0.0.1:9/t", "--seconds", 0.5)
     assert done.returncode == 1
     assert "nobody answers there" in done.stderr

@@ -1,4 +1,4 @@
-"""`tangy say`: spoken where something can speak, text everywhere, and a reason where it cannot."""
+"""`tangy say`: spoken if a voice is available, and always printed as text."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ def test_a_text_is_spoken_and_printed(tangy: Tangy, speaker: Speaker, heard: Pat
     assert "&amp; more &lt;b&gt;" in speaker.heard[0]
 
 
-def test_the_json_says_what_was_heard(tangy: Tangy, heard: Path, tmp_path: Path) -> None:
+def test_the_json_contains_the_spoken_text(tangy: Tangy, heard: Path, tmp_path: Path) -> None:
     found = json.loads(tangy("say", "O 69", "--json").stdout)
     assert found.keys() == KEYS
     assert (found["text"], found["said"]) == ("O 69", "O, 69. O, 6 9.")
     assert (found["sink"], found["seconds"], found["problem"]) == ("aplay", 2.0, None)
 
 
-def test_a_wav_is_written_and_nothing_played(tangy: Tangy, heard: Path, tmp_path: Path) -> None:
+def test_a_wav_is_written_without_playing(tangy: Tangy, heard: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.wav"
     done = tangy("say", "hello", "--out", out, "--json")
     assert done.returncode == 0
@@ -68,7 +68,7 @@ def test_a_wav_is_written_and_nothing_played(tangy: Tangy, heard: Path, tmp_path
 
 @pytest.mark.usefixtures("speaker")
 @pytest.mark.parametrize(("sink", "status"), [("auto", 0), ("aplay", 1)])
-def test_without_a_sound_card_the_text_remains(tangy: Tangy, sink: str, status: int) -> None:
+def test_a_missing_sound_card_still_prints_the_text(tangy: Tangy, sink: str, status: int) -> None:
     done = tangy("say", "hello", "--sink", sink)
     assert (done.returncode, done.stdout) == (status, "hello\n")
     assert done.stderr.startswith("tangy: No sound comes out of ")
@@ -80,7 +80,9 @@ def test_without_a_sound_card_the_text_remains(tangy: Tangy, sink: str, status: 
     ("more", "status"),
     [((), 0), (("--json",), 0), (("--out", "x.wav"), 1), (("--sink", "null"), 1)],
 )
-def test_without_espeak_the_text_remains(tangy: Tangy, more: tuple[str, ...], status: int) -> None:
+def test_missing_espeak_still_prints_the_text(
+    tangy: Tangy, more: tuple[str, ...], status: int
+) -> None:
     done = tangy("say", "hello", *more)
     assert done.returncode == status
     assert "hello" in done.stdout
@@ -125,7 +127,7 @@ def lines_kept(cache: Path) -> int:
 
 
 @pytest.mark.usefixtures("speaker")
-def test_spoken_lines_are_forgotten_and_counted(tangy: Tangy, tmp_path: Path) -> None:
+def test_cached_lines_are_deleted_and_counted(tangy: Tangy, tmp_path: Path) -> None:
     assert tangy("say", "--forget").stdout == "0 spoken lines deleted.\n"
     assert not (tmp_path / "cache").exists()
     for text in ("one", "two", "three"):
@@ -141,7 +143,7 @@ def refused(path: Path, missing_ok: bool = False) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("speaker")
-def test_a_new_name_forgets_what_was_spoken_with_the_old_one(
+def test_renaming_a_person_deletes_cached_speech(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def rename(name: str) -> int:
@@ -161,7 +163,7 @@ def test_a_new_name_forgets_what_was_spoken_with_the_old_one(
 
 
 @pytest.mark.usefixtures("mute")
-def test_voices_that_cannot_be_listed_are_an_error(tangy: Tangy) -> None:
+def test_a_failed_list_of_voices_is_an_error(tangy: Tangy) -> None:
     done = tangy("say", "--voices")
     assert (done.returncode, done.stdout) == (1, "")
     assert "espeak-ng is not installed" in done.stderr

@@ -1,4 +1,4 @@
-"""What is told of devices on one line each, and as JSON."""
+"""Devices on one line each, and as JSON."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def told(*readings: Reading) -> dict[str, DeviceSummary]:
     ("rate", "words"),
     [(None, ""), (0.0, "0.0 Hz"), (2.46, "2.5 Hz"), (9.8, "10 Hz"), (40.2, "40 Hz")],
 )
-def test_a_rate_is_told_in_hertz(rate: float | None, words: str) -> None:
+def test_a_rate_is_shown_in_hertz(rate: float | None, words: str) -> None:
     assert rate_words(told(Reading("laser", rate=rate))["laser"]) == words
 
 
-def test_the_rate_stands_beside_the_age_and_before_what_is_wrong() -> None:
+def test_the_rate_is_shown_between_the_age_and_the_problem() -> None:
     found = told(Reading("laser", 0.1, OK, {}, 10.0), Reading("base", 3.0, OK, {}, 1.0))
     assert sensor_line(found["laser"], 14).endswith("0.1 s  10 Hz")
     assert "3.0 s  1.0 Hz  Its data is too old" in sensor_line(found["base"], 14)

@@ -108,7 +108,7 @@ def test_a_sentence_has_three_words_and_a_capital_or_a_full_stop(text: str, coun
     assert said(text) is counts
 
 
-def test_sentences_for_people_stand_in_one_place() -> None:
+def test_sentences_for_people_are_in_one_package() -> None:
     allowed, _ = table()
     found = elsewhere()
     changed = [name for name in sorted({*allowed, *found}) if allowed.get(name) != found.get(name)]
@@ -118,7 +118,7 @@ def test_sentences_for_people_stand_in_one_place() -> None:
     assert not lower, f"Fewer sentences are left: write this in {TABLE.name}: {lower}"
 
 
-def test_each_exception_gives_its_reason_and_stands_once() -> None:
+def test_each_exception_has_a_reason_and_is_listed_once() -> None:
     counted, reasons = tomllib.loads(TABLE.read_text(encoding="utf-8")), table()[1]
     assert not [name for name in reasons if name in counted]
     assert not [name for name, reason in reasons.items() if len(reason.split()) < 4]

@@ -1,4 +1,4 @@
-"""How tests look at the product: by its public names, with fixtures of their own, as text.
+"""Rules for tests: public names of the product, local fixtures, and screens compared as text.
 
 A test that reads a private attribute breaks when the inside changes and nothing else; what a test
 must see, a reader of the code wants to see as well, and it gets a public name.
@@ -66,7 +66,7 @@ def touched(tree: ast.Module) -> Iterator[str]:
                                     yield f"{node.lineno}: {name!r}"
 
 
-def test_tests_touch_nothing_private_of_the_product() -> None:
+def test_tests_use_no_private_names_of_the_product() -> None:
     found = {
         path.relative_to(TESTS).as_posix(): there
         for path in FILES
@@ -75,7 +75,7 @@ def test_tests_touch_nothing_private_of_the_product() -> None:
     assert not found, "give the product a public name, or look at what it does"
 
 
-def test_what_is_private_is_found_however_it_is_touched() -> None:
+def test_every_use_of_a_private_name_is_found() -> None:
     name = next(iter(sorted(of_the_product())))
     for how in (
         f"thing.{name}",
@@ -89,7 +89,7 @@ def test_what_is_private_is_found_however_it_is_touched() -> None:
     assert not list(touched(ast.parse(f"class Own:\n def {name}(self): return self.{name}()")))
 
 
-def test_a_conftest_is_imported_in_its_own_folder_alone() -> None:
+def test_a_conftest_is_imported_only_in_its_folder() -> None:
     found = [
         f"{path.relative_to(TESTS)}: {folder}"
         for path in FILES
@@ -101,6 +101,6 @@ def test_a_conftest_is_imported_in_its_own_folder_alone() -> None:
     assert found == []
 
 
-def test_screens_are_compared_as_text_and_few_as_pictures() -> None:
+def test_few_screens_are_compared_as_pictures() -> None:
     pictures = sorted(path.name for path in TESTS.rglob("*.svg"))
     assert len(pictures) <= MOST_PICTURES, pictures

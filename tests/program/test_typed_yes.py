@@ -1,4 +1,4 @@
-"""By lines, an answer that was typed before its question answers nothing."""
+"""Answers by lines: an answer typed before its question does not count."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ FROM_HERE = {"SSH_CONNECTION": "", "SSH_TTY": "", "SSH_CLIENT": "", "TMUX": "", 
 SSH = {"SSH_CONNECTION": "192.0.2.1 50000 192.0.2.2 22"}
 
 
-def test_a_script_answers_with_y_wherever_it_runs() -> None:
+def test_a_script_answers_with_y_anywhere() -> None:
     yes = TypedYes(terminal=False, session=lambda: ELSEWHERE)
     assert yes.ask() == "Y"
     assert yes.answer("y") == Reply(yes=True)
 
 
-def test_beside_the_machine_y_is_the_yes_and_what_was_typed_ahead_is_dropped() -> None:
+def test_the_yes_of_a_local_terminal_is_y_and_drops_input_typed_ahead() -> None:
     dropped: list[bool] = []
     yes = TypedYes(terminal=True, session=lambda: HERE, flush=lambda: dropped.append(True))
     assert yes.ask() == "Y"
@@ -34,7 +34,7 @@ def test_beside_the_machine_y_is_the_yes_and_what_was_typed_ahead_is_dropped() -
     assert yes.answer("yes") == Reply(yes=True)
 
 
-def test_from_elsewhere_the_yes_is_another_digit_each_time() -> None:
+def test_the_yes_of_a_remote_terminal_is_a_changing_digit() -> None:
     yes = TypedYes(terminal=True, session=lambda: ELSEWHERE, flush=lambda: None)
     keys = [yes.ask() for _ in range(20)]
     assert set(keys) <= set("456789")
@@ -47,7 +47,7 @@ def test_from_elsewhere_the_yes_is_another_digit_each_time() -> None:
 
 
 @pytest.mark.parametrize(("setting", "digit"), [("y", False), ("digit", True)])
-def test_the_setting_counts_more_than_the_session(setting: str, digit: bool) -> None:
+def test_the_setting_overrides_the_session(setting: str, digit: bool) -> None:
     session = HERE if digit else ELSEWHERE
     yes = TypedYes(
         terminal=True,
@@ -58,7 +58,7 @@ def test_the_setting_counts_more_than_the_session(setting: str, digit: bool) -> 
     assert (yes.ask() != "Y") == digit
 
 
-def test_of_lines_that_were_read_ahead_only_answers_are_dropped() -> None:
+def test_only_answers_among_lines_read_ahead_are_dropped() -> None:
     typed: SimpleQueue[str | None] = SimpleQueue()
     for line in ("y\n", "stop\n", "2\n", "call number\n", "no\n", None):
         typed.put(line)
@@ -96,7 +96,7 @@ def elsewhere(folder: Path) -> Iterator[Terminal]:
 
 
 @pytest.mark.slow
-def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
+def test_a_y_typed_ahead_executes_nothing(here: Terminal) -> None:
     here.type("greet everyone\ny\n")
     here.until("Type Y to do it")
     here.type("n\n")
@@ -108,7 +108,7 @@ def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
 
 
 @pytest.mark.slow
-def test_from_elsewhere_a_question_names_the_digit_that_is_its_yes(elsewhere: Terminal) -> None:
+def test_a_question_on_a_remote_terminal_names_its_digit(elsewhere: Terminal) -> None:
     elsewhere.type("greet everyone\n")
     shown = elsewhere.until("to do it, or N")
     found = re.search(r"Type (\d) to do it", shown)

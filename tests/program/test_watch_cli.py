@@ -26,14 +26,14 @@ from tests.support.waiting import PATIENCE
 Tangy = Callable[..., CompletedProcess[str]]
 
 
-def test_there_is_nothing_to_stop_where_no_game_runs(tangy: Tangy, tmp_path: Path) -> None:
+def test_stop_without_a_game_is_refused(tangy: Tangy, tmp_path: Path) -> None:
     done = tangy("watch", "--stop", "--data", tmp_path)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert not list(tmp_path.iterdir()), "who only looks makes nothing"
 
 
-def test_no_page_is_served_at_all_addresses_at_once(tangy: Tangy) -> None:
+def test_serving_on_all_addresses_is_refused(tangy: Tangy) -> None:
     assert tangy("serve", "--host", "0.0.0.0").returncode == 2  # noqa: S104
 
 
@@ -47,7 +47,7 @@ def test_no_page_is_served_at_all_addresses_at_once(tangy: Tangy) -> None:
         ({"Origin": "http://evil.example"}, "", True, 403),
     ],
 )
-async def test_only_who_knows_the_token_comes_in(
+async def test_only_clients_with_the_token_are_admitted(
     headers: dict[str, str], query: str, cookie: bool, status: int
 ) -> None:
     token, allowed = new_token(), set[str]()
@@ -64,7 +64,7 @@ async def test_only_who_knows_the_token_comes_in(
         assert got.status == status
 
 
-async def test_the_token_is_kept_out_of_the_address_once_it_was_given() -> None:
+async def test_the_token_is_removed_from_the_address_after_its_use() -> None:
     token, allowed = new_token(), set[str]()
     app = web.Application(middlewares=[only_known(token, allowed)])
     async with TestClient(TestServer(app)) as client:
@@ -84,13 +84,13 @@ async def test_the_token_is_kept_out_of_the_address_once_it_was_given() -> None:
         ("::1", 8770, "[::1]:8770"),
     ],
 )
-def test_a_browser_is_let_in_by_the_name_that_it_sends(host: str, port: int, sent: str) -> None:
+def test_a_browser_is_admitted_by_its_host_header(host: str, port: int, sent: str) -> None:
     assert known_as(host, port) == {sent}
     assert address(host, port, "t").startswith(f"http://{sent}")
 
 
 class Page:
-    """A page in a browser that runs nothing."""
+    """A browser page without an application."""
 
     def __init__(self, *_: object, **__: object) -> None:
         self.stopped = False

@@ -41,14 +41,14 @@ def scene(place: str = FRONT, *requests: str, card: CardView | None = None) -> S
         (("end", "AR", "occluded"), "somebody has won"),
     ],
 )
-def test_a_situation_is_its_stage_and_what_matters_there(
+def test_a_situation_is_described_by_its_stage_and_details(
     situation: tuple[str, str, str], words: str, activity: Activity
 ) -> None:
     triple = next(s for s in activity.situations if s == situation)
     assert activity.in_words(triple) == words
 
 
-def test_a_step_names_the_behaviour_and_for_whom(activity: Activity) -> None:
+def test_a_step_names_its_behaviour_and_person(activity: Activity) -> None:
     begun = state(Situation("start", "ANR", "occluded"))
     asked = state(Situation("navigate", "AR", "occluded"), attended="user2")
     group = Step("greeting", None, begun, begun)
@@ -57,7 +57,7 @@ def test_a_step_names_the_behaviour_and_for_whom(activity: Activity) -> None:
     assert step_words(activity, one, name) == "somebody asks for help -> go to the user (Ken)"
 
 
-def test_the_state_tells_who_asks_first_come_first(activity: Activity) -> None:
+def test_the_state_lists_requests_in_order(activity: Activity) -> None:
     asked = state(Situation("navigate", "AR", "occluded"), attended="user2")
     assert state_words(activity, asked, scene(FRONT, "user2", "user1"), name) == (
         "Tangy is at the front. Asking for help: Ken, then Rosa."
@@ -68,7 +68,7 @@ def test_the_state_tells_who_asks_first_come_first(activity: Activity) -> None:
     )
 
 
-def test_beside_a_person_the_state_tells_what_the_card_shows(activity: Activity) -> None:
+def test_the_state_beside_a_person_describes_the_card(activity: Activity) -> None:
     beside = state(Situation("help", "AR", "missing numbers"), "user2", "user2")
     card = CardView("user2", NUMBERS, marked=0b0001, called=0b0110)
     told = state_words(activity, beside, scene("user2", "user2", card=card), name)
@@ -83,7 +83,7 @@ def test_a_correct_card_needs_no_words(activity: Activity) -> None:
     assert card_words(activity, CardView("user1", NUMBERS, 0b111, 0b011)) == "Wrong: B-3."
 
 
-def test_a_device_without_data_is_told_of_in_the_same_words_everywhere() -> None:
+def test_a_silent_device_has_the_same_words_everywhere() -> None:
     robot = load_robot()
     device = next(iter(robot.devices.values()))
     told = {
