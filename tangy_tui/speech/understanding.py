@@ -94,7 +94,7 @@ def wanted(
         {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
         stop_texts(),
-        (*other_stop_texts(), *said, *phrasebook.table.wordings * WORDED),
+        (*other_stop_texts(), *said, *phrasebook.table.wordings * WORDED, *given * WORDED),
         tuple(sorted(phrasebook.game)),
     )
 
@@ -214,10 +214,17 @@ def replied(
     words of the alternatives, and `people` the possible answers of people in a game, by spoken
     form.
     """
+    given = answered(evidence, settings, people) if answers else None
+    if (
+        given is not None
+        and given.confidence >= BOTH_HEARD
+        and not _stops(evidence.words, evidence)
+    ):
+        return given, None  # a stop that only the third decoder hears is none
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
         return Say(evidence.words, 1.0, None), None
-    if answers and said is None and (given := answered(evidence, settings, people)) is not None:
+    if said is None and given is not None:
         return given, None
     none = answers and said is None and evidence.seconds
     told: HearingKind | None = "no answer" if none else None

@@ -8,7 +8,7 @@ from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.steering import IN_GAMES
-from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence
 from tangy_tui.speech.understanding import BOTH_HEARD, LEAST_ANSWER, commanded, replied, wanted
 from tests.support.declared import declared
@@ -39,6 +39,28 @@ def test_an_answer_counts_if_both_decoders_hear_it(
     assert isinstance(said, Say)
     assert said.text == (words if words in GIVEN else phrase)
     assert (said.confidence >= CERTAIN) is judged
+
+
+@pytest.mark.parametrize(
+    ("words", "phrase", "stops"),
+    [
+        ("the dove", "the dove", False),  # only the stop decoder hears a stop
+        ("the dove", "", True),
+        ("stop tangy", "stop tangy", True),
+        ("stop tangy", "the dove", True),
+    ],
+)
+def test_an_answer_that_both_decoders_hear_does_not_stop_the_robot(
+    words: str, phrase: str, stops: bool
+) -> None:
+    evidence = AcousticEvidence(words, phrase, 0.0, 1.0, 1.0, "the robot now")
+    said, _ = replied(evidence, USUAL, (), IN_GAMES, GIVEN, answers=True)
+    assert isinstance(said, StopCommand) is stops
+
+
+def test_the_stop_decoder_knows_the_answers_as_other_talk() -> None:
+    book = Phrasebook(declared("trivia"), load_people(4))
+    assert "honey" in wanted(book, USUAL).no_stops
 
 
 def test_a_spoken_number_is_given_in_digits() -> None:
