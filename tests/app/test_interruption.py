@@ -57,7 +57,7 @@ class Interrupted:
         return self.workspace.supervision(policy, SEED)
 
     def play(self, steps: int, *, whole: int = 0) -> None:
-        """Play so many whole games, and so many steps of another one."""
+        """Play a number of whole games, and a number of steps of another one."""
         control = scripted_controller(self.supervision)
         for _ in range(whole):
             control.begin()
@@ -68,7 +68,7 @@ class Interrupted:
             go_on_by_script(control, expert=False)
 
     def interrupt(self) -> None:
-        """Leave the program as a crash does, and start it anew."""
+        """End the program like a crash, and start it again."""
         self.workspace.close()
         self.workspace = Workspace(self.folder)
         self.supervision = self.new()

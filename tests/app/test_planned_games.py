@@ -64,12 +64,12 @@ class Planned:
         self.events = self.control.begin()
 
     def play(self, calls: int = 1_000) -> None:
-        """Play on until so many numbers were called, or the game is over."""
+        """Play until a number of calls or the end of the game."""
         while not self.supervision.over and len(self.world.called_now) < calls:
             self.events += go_on_by_script(self.control, expert=True)
 
     def do(self, command: GameCommand) -> list[str]:
-        """Carry out a command; return the kinds of what was told."""
+        """Carry out a command; return the kinds of its events."""
         told = self.control.apply(command)
         return [one.kind if isinstance(one, StaffNote) else str(one.what)  # type: ignore[union-attr]
                 for one in told]  # fmt: skip

@@ -57,17 +57,17 @@ def remarks(events: list[TeachingEvent]) -> list[Remark]:
 
 
 def do(teaching: TeachingSession, *phrases: str) -> list[Remark]:
-    """Give commands, and return what was remarked on them."""
+    """Give commands, and return the remarks on them."""
     return [remark for phrase in phrases for remark in remarks(show(teaching, phrase))]
 
 
 def same(told: Remark, later: list[Remark]) -> list[Remark]:
-    """Return what was remarked in the same situation."""
+    """Return the remarks in the same situation."""
     return [r for r in later if r.step.state.situation == told.step.state.situation]
 
 
 def until(teaching: TeachingSession, stage: str) -> None:
-    """Teach as it is expected, up to a stage."""
+    """Teach the expected behaviours up to a stage."""
     script = ScriptedTeacher(teaching)
     while teaching.world.observe().stage != stage:
         command = script.command()

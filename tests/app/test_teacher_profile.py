@@ -22,7 +22,7 @@ from tangy_tui.console.who import ask_who
 
 
 def ask(folder: Path, *typed: str) -> tuple[str, list[str]]:
-    """Ask by lines, and return the name and what was said."""
+    """Ask by lines, and return the name and the output."""
     lines = iter(typed)
     said: list[str] = []
     return ask_who(folder, lambda: next(lines, None), said.append)[0], said

@@ -28,7 +28,7 @@ HEAD = ("activity", "people", "seed", "finished", "asked", "steps", "minutes", "
 
 
 def tangy(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run Tangy on a data folder, and return what it printed."""
+    """Run Tangy on a data folder, and return its output."""
     command = [TANGY, *words, "--data", str(folder)]
     return subprocess.run(command, text=True, capture_output=True, timeout=LONGEST)  # noqa: S603
 

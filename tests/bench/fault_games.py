@@ -237,7 +237,7 @@ def pairs(settings: Settings, case: Case) -> dict[str, Any]:
 
 
 def _turns(events: Sequence[Event]) -> list[str]:
-    """Return the ids of the faults in the order in which they were treated."""
+    """Return the ids of the faults in the order of their treatment."""
     return [e.fault.id for e in events if isinstance(e, Moved) and e.move.kind in TURNS]
 
 

@@ -130,7 +130,7 @@ def print_matrix(rows: Sequence[Mapping[str, Any]], behaviours: Sequence[Behavio
 
 
 def print_alarms(games: int, jobs: int) -> None:
-    """Show what is diagnosed in games in which nothing is wrong."""
+    """Show the diagnoses in games without faults."""
     table = shown("Games without faults, after three demonstrations by chance",
                   "", "demonstrations", "games", "behaviours", "only asked", "diagnosed",
                   "false alarms a game")  # fmt: skip
@@ -159,7 +159,7 @@ def print_alarms(games: int, jobs: int) -> None:
 
 
 def print_pairs(seeds: int, jobs: int) -> None:
-    """Show for every pair of a critical and another kind whether the critical one came first."""
+    """Show whether the critical fault comes first, for every pair with another kind."""
     classes = kinds_by_recovery(load_faults(load_robot()))
     others = [kind for name, kinds in classes.items() if name != "expert" for kind in kinds]
     cases = [(a, b, 0, seeds) for a, b in product(classes["expert"], others)]

@@ -33,7 +33,7 @@ def misspelt(word: str, random: Random) -> str:
 
 
 def any_mutant(text: str, random: Random) -> str:
-    """Take out, put in, double or move a piece of a text."""
+    """Delete, insert, double or move a piece of a text."""
     begin = random.randrange(len(text))
     end = min(len(text), begin + random.choice((1, 1, 2, 8, 60)))
     piece = text[begin:end]
@@ -51,7 +51,7 @@ def any_mutant(text: str, random: Random) -> str:
 
 
 def main() -> None:
-    """Print what came of so many mutants."""
+    """Print the results of a number of mutants."""
     number, seed = (int(one) for one in (*sys.argv[1:3], "2000", "1")[:2])
     random, found = Random(seed), Counter[str]()
     names = [n for n in shipped_activities() if isinstance(load_activity(n), DeclaredActivity)]

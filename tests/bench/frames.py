@@ -58,7 +58,7 @@ class Child:
         os.close(child)
 
     def read(self, seconds: float) -> list[bytes]:
-        """Collect what is written within so many seconds, one piece for each write."""
+        """Collect the output of some seconds, one piece for each write."""
         until = monotonic() + seconds
         pieces: list[bytes] = []
         while (left := until - monotonic()) > 0:

@@ -86,7 +86,7 @@ def replay(beats: Sequence[Beat], robot: Robot) -> Replayed:
 
 @contextmanager
 def busy(count: int) -> Iterator[None]:
-    """Let so many busy processes run."""
+    """Run a number of busy processes."""
     command = [sys.executable, "-c", "while True: pass"]
     loops = [subprocess.Popen(command) for _ in range(count)]  # noqa: S603
     try:
@@ -118,7 +118,7 @@ def _hold(world: BenchedWorld, holds: Sequence[float], over: threading.Event) ->
 
 
 def record(path: Path, seconds: float, load: int, holds: Sequence[float]) -> None:
-    """Record beats for so many s."""
+    """Record beats for some s."""
     over = threading.Event()
     with (
         TemporaryDirectory() as folder,

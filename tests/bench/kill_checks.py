@@ -81,12 +81,12 @@ def logged(folder: Path) -> tuple[list[object], bool]:
 
 
 def steps_in(events: Sequence[object]) -> list[tuple[object, ...]]:
-    """Return the steps among what was logged."""
+    """Return the steps among logged events."""
     return [event for event in events if isinstance(event, tuple) and len(event) == 6]
 
 
 def compare(folder: Path, world: GameWorld, found: Found) -> None:
-    """Take the killed game up, and count what is not as its log has it."""
+    """Resume the killed game, and count the differences from its log."""
     workspace = Workspace(folder)
     try:
         past = find_interrupted(workspace, world)

@@ -138,7 +138,7 @@ def restarted(folder: Path, *, bench: bool) -> tuple[float, float]:
 
 
 def run(kills: int, *, bench: bool, seed: int, scratch: Path, every: int = 10) -> Found:
-    """Kill games and take them up again; return what was found.
+    """Kill games and resume them; return the differences.
 
     Args:
         kills: how many.
@@ -205,7 +205,7 @@ def kill_once(
 def kill_again_and_again(
     folder: Path, game: int, rng: random.Random, whole: list[object], found: Found, kills: int
 ) -> None:
-    """Kill a game on the bench, again each time it goes on."""
+    """Kill a game on the bench, again after each resume."""
     before: list[object] = []
     for leg in range(min(LEGS, kills - found.kills)):
         steps = len(steps_in(before)) + rng.randrange(1, FURTHER)

@@ -118,7 +118,7 @@ class LateRobot(DrivenRobot):
         kept.arrived += self.navigator.state == "arrived"
 
     def tick(self) -> Twist:
-        """Pass on what is known, as the robot's control does."""
+        """Pass on the known poses, as the robot's control does."""
         odometry, scan = self.base.newest, self.laser.newest
         if odometry is None:
             return STILL

@@ -22,7 +22,7 @@ __all__ = ["MAP", "ROOM", "drives"]
 
 
 def drives(scene: str, count: int, seed: int = 0) -> list[Drive]:
-    """Drive so many times through a scene."""
+    """Drive a number of times through a scene."""
     number = list(SCENES).index(scene)
     return [SCENES[scene](np.random.default_rng([seed, number, one])).run() for one in range(count)]
 

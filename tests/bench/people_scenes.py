@@ -79,7 +79,7 @@ def at_the_wall(rng: Generator) -> Drive:
 
 
 def steps_in(rng: Generator) -> Drive:
-    """Somebody steps from aside into the way of a robot that drives, and stands there."""
+    """A person steps from the side into the path of the moving robot, and stands there."""
     while True:
         start, goal = way(rng)
         share, side = rng.uniform(0.35, 0.75), float(rng.choice([-1, 1]))

@@ -45,7 +45,7 @@ Kind = Literal["ahead", "behind", "stood"]
 
 @dataclass
 class Person:
-    """Somebody on two legs, or in a wheelchair; `step` moves them, knowing where the robot is."""
+    """A person on two legs or in a wheelchair; `step` moves them, given the robot's pose."""
 
     x: float
     y: float
@@ -185,7 +185,7 @@ class Drive:
         return Scan(first, step, np.maximum(ranges, 0.02), 30.0)
 
     def _note(self, person: Person) -> None:
-        """Take note of how near somebody is, and of a touch as it begins."""
+        """Record the distance of a person, and each touch as it begins."""
         gap = person.gap(self.pose, self.away)
         self.nearest = min(self.nearest, gap)
         bearing = atan2(person.y - self.pose.y, person.x - self.pose.x)
@@ -212,7 +212,7 @@ class Drive:
 
 
 def followed(twist: Twist, told: Twist) -> Twist:
-    """Return how fast a base drives a tick after it was told how."""
+    """Return the speed of a base one tick after a command."""
     brakes = abs(told.forward) < abs(twist.forward)
     most = (BRAKE if brakes else GAIN) * TICK
     return Twist(

@@ -168,7 +168,7 @@ def lines_answered(far: FarTerminal, terminal: Terminal, times: int, reading: fl
 
 
 def read(written: bytes) -> str:
-    """Return what was written, however its lines are broken."""
+    """Return the output without its line breaks."""
     return " ".join(written.decode(errors="replace").split())
 
 

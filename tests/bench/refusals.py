@@ -77,7 +77,7 @@ def simulated(
 
 
 def main() -> None:
-    """Play, and print what became of each game on the bench, and of all."""
+    """Play, and print the result of each game on the bench, and the totals."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--games", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)

@@ -78,7 +78,7 @@ def meaning(kind: str, text: str) -> tuple[str, dict[str, str]] | None:
 
 
 def right(kind: str, text: str, behaviour: str, arguments: dict[str, str]) -> bool:
-    """Say whether an utterance was understood as it was meant."""
+    """Return whether an utterance was understood correctly."""
     wanted = meaning(kind, text)
     if wanted is None or wanted[0] != behaviour:
         return False

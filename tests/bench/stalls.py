@@ -71,7 +71,7 @@ class Stall:
     stood: float | None = None
 
     def look(self, world: BenchedWorld, after: float) -> None:
-        """Note what the base does so many s after the stall began."""
+        """Record the motion of the base some s after the stall began."""
         truth = world.truth()
         if self.told is None and not any(truth["commanded"]):
             self.told = after
@@ -109,7 +109,7 @@ class WatchedBench(BenchedWorld):
 
 
 class StalledGames:
-    """Games that another thread plays, and what was told in them."""
+    """Games that another thread plays, and their events."""
 
     def __init__(self, control: GameController, world: WatchedBench) -> None:
         self.control = control
@@ -171,7 +171,7 @@ class StalledGames:
         return ASKING if game.question is not None else self.world.doing
 
     def stall(self, seconds: float) -> Stall:
-        """Stop the robot process for so many s, and look what comes of it."""
+        """Stop the robot process for some s, and record the effects."""
         world = self.world
         pid = world.link.pid
         assert pid is not None

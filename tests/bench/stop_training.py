@@ -49,7 +49,7 @@ def digest_of(examples: Iterable[Example]) -> str:
 
 
 def main() -> None:
-    """Learn the stops anew."""
+    """Train the model of stops again."""
     examples = stop_examples()
     model = json.loads(train(examples).to_json())
     told = json.dumps({"made_of": digest_of(examples), **model}, separators=(",", ":"))

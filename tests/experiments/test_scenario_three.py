@@ -43,7 +43,7 @@ GAMES = 6
 
 @pytest.fixture(scope="module")
 def document() -> dict[str, Any]:
-    """What comes out of a few games, once."""
+    """The document of a few games, played once."""
     return recovery(Recovering("bingo", 4, GAMES, 2), Where(jobs=1))
 
 

@@ -9,7 +9,7 @@ from tests.hw.waiting import PATIENCE
 
 
 def paired(pairing: Pairing) -> bytes:
-    """Return the line of a request by which a paired tablet is known."""
+    """Return the request header that identifies a paired tablet."""
     return f"Cookie: other=1; {pairing.cookie}={pairing.token()}\r\n".encode()
 
 

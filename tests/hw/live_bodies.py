@@ -44,7 +44,7 @@ class ToldDevice:
 
 
 class ToldBase(ToldDevice):
-    """Wheels that stay where they are, whatever they are told."""
+    """Wheels that stay in place despite commands."""
 
     odometry = Stamped(Odometry(HERE, Twist()), 0.0, 1)
 
@@ -62,7 +62,7 @@ class ToldLaser(ToldDevice):
 
 
 class ToldArms(ToldDevice):
-    """Arms whose movements last until they are told to hold."""
+    """Arms whose movements last until `hold`."""
 
     def __init__(self, name: str, told: list[Any]) -> None:
         super().__init__(name, told)
@@ -114,7 +114,7 @@ class ToldScreen(ToldDevice):
 
 
 class ToldBody:
-    """A whole body, and `told`, what its devices were told in that order."""
+    """A whole body, and `told`, the commands to its devices in order."""
 
     def __init__(self) -> None:
         self.told: list[Any] = []

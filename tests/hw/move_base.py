@@ -42,7 +42,7 @@ class MoveBase:
         self.server.publish("/move_base/feedback", "", {"feedback": feedback})
 
     def place(self, pose: Pose, spread: float = 0.1) -> None:
-        """Say by amcl_pose where it is."""
+        """Publish the pose on amcl_pose."""
         covariance = [0.0] * 36
         covariance[0] = covariance[7] = spread**2 / 2
         where = {"pose": pose_message(pose), "covariance": covariance}

@@ -25,7 +25,7 @@ ROW: Box = (0.05, 2.7, 9.95, 3.0)
 
 
 def at_seat(place: int) -> Pose:
-    """Return where the robot stands to help somebody."""
+    """Return the pose from which the robot helps a person."""
     stand = ROOM.stand(PEOPLE[place], PEOPLE)
     return Pose(stand.x, stand.y, pi / 2)
 
@@ -46,7 +46,7 @@ class DrivenRobot:
         self.navigator = Navigator(MAP, np.random.default_rng(seed + 1), FRONT)
 
     def run(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """Let time pass; say whether it came to what was waited for."""
+        """Let time pass; return whether the condition was met."""
         for _ in range(round(seconds * 10)):
             sides = self.elsewhere if self.elsewhere is not None else room_sides(ROOM, *self.boxes)
             scan = None if self.blind else look(sides, self.true, self.rng, beams=240)

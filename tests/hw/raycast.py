@@ -75,7 +75,7 @@ def look(
 
 
 def driven(pose: Pose, twist: Twist, dt: float) -> Pose:
-    """Return where a base is after driving so for `dt` seconds."""
+    """Return the pose of a base after driving for `dt` seconds."""
     turned = twist.turn * dt
     half = turned / 2
     way = twist.forward * dt * (sin(half) / half if abs(half) > 1e-9 else 1.0)

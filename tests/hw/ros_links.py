@@ -29,7 +29,7 @@ class Now:
 
 @asynccontextmanager
 async def linked(**settings: Any) -> AsyncIterator[tuple[RosbridgeServer, Rosbridge, Now]]:
-    """Open a server and a link to it, whose time is what is set."""
+    """Open a server and a link to it, on a clock that the test sets."""
     server, now = RosbridgeServer(), Now()
     await server.start()
     bridge = Rosbridge(server.url, **{"clock": now, **settings})
@@ -53,7 +53,7 @@ async def done(_: Any) -> dict[str, Any]:
 
 
 class Raw:
-    """A server that is told by the test what to say, and keeps what it heard."""
+    """A server with scripted messages that records the received ones."""
 
     def __init__(self) -> None:
         self.heard: list[dict[str, Any]] = []

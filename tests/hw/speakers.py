@@ -40,7 +40,7 @@ def from_pipe(seconds: float, rate: int = 22_050) -> bytes:
 
 
 class Speaker:
-    """A synthesiser that makes the same sound of everything, and keeps what it was asked."""
+    """A synthesiser with one sound for every text, which records the requests."""
 
     def __init__(self, folder: Path, *, seconds: float = 2.0) -> None:
         folder.mkdir(exist_ok=True)
@@ -51,7 +51,7 @@ class Speaker:
         self.path = program(folder / "bin" / "espeak-ng", SYNTHESISER.format(folder=folder))
 
     def which(self, name: str) -> str:
-        """Find it, whatever is looked for."""
+        """Return this synthesiser for any name."""
         return str(self.path)
 
     @property

@@ -46,7 +46,7 @@ def test_a_cancelled_opening_cannot_complete() -> None:
 
 
 def test_an_end_handler_runs_without_the_lock() -> None:
-    """It is called without the lock, so that whoever ends can go on from there."""
+    """The handler runs without the lock, so that another thread can register a part."""
     opening, seen = Cancellation(), list[bool]()
 
     def end() -> None:

@@ -21,7 +21,7 @@ BARE, CHIP, HAND = (0.998, 0.001, 0.001), (0.001, 0.998, 0.001), (0.001, 0.001, 
 
 
 def around(parts: NDArray[Any], looks: NDArray[Any] | None = None) -> dict[str, NDArray[Any]]:
-    """Return what each of a card's 5 x 5 cells is told of the others, by name."""
+    """Return the context of each of a card's 5 x 5 cells, by name of the feature."""
     seen = np.zeros((25, len(LOOKS))) if looks is None else looks
     rows = context_of(parts[None], seen[None], np.zeros((1, 25)), 5)[0]
     return {name: rows[:, place] for place, name in enumerate(NAMES)}

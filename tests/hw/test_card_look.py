@@ -117,7 +117,7 @@ def test_a_repeated_or_too_early_picture_is_no_new_moment() -> None:
 
 
 class Filmed:
-    """Stands in for `CameraHub`: gives pictures of these chips, so many s after one another."""
+    """Stands in for `CameraHub`: gives pictures of these chips at an interval in s."""
 
     card_device = "camera"
 

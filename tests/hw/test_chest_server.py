@@ -35,7 +35,7 @@ COOKIE = paired(PAIRING)
 
 
 class Served(ChestServer):
-    """A server that keeps what it tells."""
+    """A server that records its reports."""
 
     def __init__(self) -> None:
         self.told: list[dict[str, Any]] = []

@@ -50,7 +50,7 @@ def do(world: LiveWorld, name: str, target: str | None = None) -> None:
 
 
 def visit(world: LiveWorld, link: FakeLink, seat: int, card: LaidCard) -> str:
-    """Let the robot come to somebody who asks, and return the user activity state it sees."""
+    """Let the robot visit a person who asks, and return the observed card state."""
     person = PEOPLE[seat - 1]
     link.cards = {person: card}
     link.sign(seat)

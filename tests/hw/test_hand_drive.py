@@ -137,7 +137,7 @@ TWISTS = st.builds(Twist, NUMBERS, NUMBERS)
 
 
 def may_drive(told: list[Any], speed: float) -> None:
-    """Look whether nothing that a base was told is faster than it may be."""
+    """Check that no command to a base exceeds the maximum speed."""
     for twist in told:
         if twist == "stop":
             continue

@@ -55,7 +55,7 @@ def opened(world: LiveWorld) -> LiveWorld:
 
 
 def beside(world: LiveWorld, link: FakeLink, seat: int, card: LaidCard) -> LiveWorld:
-    """Let the robot stand beside somebody who asks."""
+    """Place the robot beside a person who asks."""
     opened(world)
     person = PEOPLE[seat - 1]
     link.cards[person] = card

@@ -89,7 +89,7 @@ class TestButtons:
                     if sorted(ask.seat for ask in asks) == list(wanted):
                         return
 
-        # Both ends: what is written before the box is opened is not lost.
+        # Both ends, so that bytes written before the box opens are not lost.
         descriptor = os.open(path, os.O_RDWR | os.O_NONBLOCK)
         async with box:
             os.write(descriptor, PRESS_2 + PRESS_2)

@@ -38,7 +38,7 @@ class Bench:
             await self.server.somebody()
 
     async def turn(self, ranges: NDArray[np.float64], *, lost: int = 0) -> NDArray[np.float64]:
-        """Let the scanner turn, a tenth of a second later; return what was read."""
+        """Let the scanner turn, a tenth of a second later; return the scan."""
         self.turns += 1 + lost
         self.now += 0.1 * (1 + lost)
         seq = self.laser.scan.seq if self.laser.scan else 0

@@ -62,7 +62,7 @@ class Link:
 
 
 async def take(listener: Source, count: int) -> bytes:
-    """Hear so many bytes."""
+    """Read a number of bytes."""
     got = b""
     while len(got) < count:
         got += await asyncio.wait_for(anext(listener), PATIENCE)

@@ -49,7 +49,7 @@ class Listening:
         return connection
 
     async def reads(self, connection: socket.socket, text: bytes) -> bool:
-        """Read what a connection is told."""
+        """Read the reply to a connection."""
         got = b""
         while len(got) < len(text):
             loop = asyncio.get_running_loop()

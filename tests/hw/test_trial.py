@@ -28,7 +28,7 @@ def driven(folder: Path, **drivers: str) -> Robot:
 
 
 async def tried(robot: Robot, seconds: float = SECONDS) -> dict[str, SelfTestResult]:
-    """Return what is found, by device."""
+    """Return the result for each device."""
     found = await try_robot(robot, load_activity("bingo"), {}, seconds)
     assert len({one.device for one in found}) == len(found)
     return {one.device: one for one in found}

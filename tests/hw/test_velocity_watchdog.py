@@ -44,7 +44,7 @@ asyncio.run(drive())
 
 @asynccontextmanager
 async def listening() -> AsyncIterator[tuple[RosbridgeServer, list[float]]]:
-    """Open a base that keeps how fast it was told to drive, in m/s."""
+    """Open a base that records its commanded speeds, in m/s."""
     server, told = RosbridgeServer(), list[float]()
     server.on_message("/cmd_vel", lambda message: told.append(message["linear"]["x"]))
     await server.start()
@@ -58,7 +58,7 @@ async def listening() -> AsyncIterator[tuple[RosbridgeServer, list[float]]]:
 async def watched(
     server: RosbridgeServer, lives: float
 ) -> AsyncIterator[tuple[Watchdog, list[Any]]]:
-    """Have a watchdog watch a base; return what it says as well."""
+    """Start a watchdog for a base; return it and its reports."""
     said: list[Any] = []
     watchdog = Watchdog(said.append)
     base = {"at": server.url, "ros": 1, "drive": "/cmd_vel", "stamped": False, "lives": lives}

@@ -13,7 +13,7 @@ LONGEST = 5.0  # s for which nobody has to wait without hearing why
 
 
 async def said(yields_to: list[BlockingPerson], *, halted: bool = False) -> list[tuple[float, str]]:
-    """Return what is said when, while it stands so for a tenth of a second each."""
+    """Return the spoken sentences with their times, for a wait of 0.1 s in each state."""
     heard: list[tuple[float, str]] = []
     now = 0.0
 

@@ -15,7 +15,7 @@ from tangy_profiles.robot import load_robot
 
 ROBOT = load_robot()
 NEEDED = ("link", "stop_button", "base", "laser", "localisation", "navigator")
-"""Without these it must not drive; written down here, so that none is left out unnoticed."""
+"""The robot must not drive without these; listed here, so that no device is forgotten."""
 
 OTHERS = [device for device in ROBOT.devices if device not in NEEDED]
 

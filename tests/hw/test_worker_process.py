@@ -60,7 +60,7 @@ for asked in requests(answers.refuse):
 
 @pytest.fixture
 def echo() -> Iterator[Callable[..., WorkerProcess]]:
-    """Children that say again what they are told, unless they are told to do worse."""
+    """Child processes that echo their lines, or misbehave on request."""
     made: list[WorkerProcess] = []
 
     def one(**how: Any) -> WorkerProcess:

@@ -23,7 +23,7 @@ def response(person: str, strategy: str, complied: bool) -> Response:
 
 
 def converse(persuasion: Persuasion, person: str, likes: str, times: int, rng: Random) -> list[str]:
-    """Persuade a person of hidden preference `likes` (.9, others .4); return what was used."""
+    """Persuade a person with preference `likes` (.9, others .4); return the used strategies."""
     used = []
     for _ in range(times):
         strategy = persuasion.choose(person).strategy

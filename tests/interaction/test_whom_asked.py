@@ -29,7 +29,7 @@ REPEAT = "repeat question"
 
 
 def shown_alone(seed: int) -> Demonstration:
-    """Show games with one person, who is meant by every selector."""
+    """Show games with one person, whom every selector names."""
     steps: list[Step] = []
     world = DeclaredWorld(ACTIVITY, PEOPLE[:1], seed=seed)
     for _ in range(40):

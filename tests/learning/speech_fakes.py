@@ -26,7 +26,7 @@ def sound(letter: str, seconds: float = 0.5) -> bytes:
 
 
 async def soon(condition: Callable[[], bool]) -> None:
-    """Let everything else go on until a condition holds."""
+    """Run the event loop until a condition holds."""
     async with asyncio.timeout(PATIENCE):
         while not condition():  # noqa: ASYNC110 - there is no event for it
             await asyncio.sleep(0)

@@ -73,7 +73,7 @@ def editor(store: Store) -> Editor:
 
 
 def used(library: Library) -> dict[str, list[int]]:
-    """Return what is learnt from: the steps of every demonstration that is in use."""
+    """Return the steps of every demonstration in use."""
     return {d.id: [step.id for step in d.steps] for d in library.finished}
 
 

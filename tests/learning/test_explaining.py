@@ -177,7 +177,7 @@ def test_every_situation_of_the_shipped_activity_has_words(activity: Activity) -
 
 @pytest.fixture
 def two_teachers(store: Store, shown: list[Demonstration], activity: Activity) -> Store:
-    """A log in which Ada shows what is expected and Bea jokes where marks are wrong."""
+    """A log in which Ada shows the expected behaviours, and Bea jokes at wrong marks."""
     steps = tuple(
         replace(s, behaviour="joke") if s.state.situation == WRONG else s for s in shown[1].steps
     )

@@ -84,7 +84,7 @@ class TestSeats:
 
 
 def meanings(book: Phrasebook) -> dict[tuple[str, ...], tuple[str, str | None]]:
-    """Return what each phrase of a phrasebook stands for."""
+    """Return the meaning of each phrase of a phrasebook."""
     return {phrase.words: (phrase.behaviour, phrase.user) for phrase in book.table.all()}
 
 

@@ -51,7 +51,7 @@ class Heard:
             return await self.recogniser.hear(self.sound, endpoint=endpoint)
 
     async def said(self, count: int, times: int = 1) -> None:
-        """Wait until so many bytes were answered, so many times."""
+        """Wait until a number of bytes was answered a number of times."""
         async with asyncio.timeout(PATIENCE):
             while self.partials.count(f"{count} bytes") < times:
                 self._answered.clear()

@@ -153,7 +153,7 @@ class ScriptedEars:
         self.asked.append(asks)
 
     def follow(self, events: object) -> None:
-        """Keep nothing of what became of it."""
+        """Record nothing."""
 
     def __aiter__(self) -> AsyncIterator[Heard]:
         return self

@@ -84,7 +84,7 @@ def test_failed_late_and_confirmed_calls_are_distinguished(
     line.says("Anna Berg", "answered", "I am on my way")
     assert "030 901820" not in expert_words(game) and "I am on my way" in expert_words(game)
     line.says("Anna Berg", "failed", "too late")
-    assert "I am on my way" in expert_words(game)  # what was answered stays so
+    assert "I am on my way" in expert_words(game)  # an answered call stays answered
     assert game.reached("Ada") and "I am on my way" in expert_words(game)
     stages = [stage for role, stage, _ in logged(workspace.store) if role == EXPERT]
     assert stages == ["tried", "failed", "tried", "sent", "answered"]

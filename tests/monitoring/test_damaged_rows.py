@@ -58,7 +58,7 @@ def every_kind(_every_kind: Path, tmp_path: Path) -> Path:
 
 
 def change(folder: Path, sql: str, *values: object) -> None:
-    """Change events behind the back of the log, as damage does."""
+    """Change events directly in the database, as damage does."""
     with closing(sqlite3.connect(folder / "tangy.db")) as db:
         db.executescript("DROP TRIGGER IF EXISTS unchanged; DROP TRIGGER IF EXISTS undeleted;")
         db.execute(sql, values)
@@ -76,7 +76,7 @@ def drop(folder: Path, seq: int, key: str) -> None:
 
 
 def put(folder: Path, seq: int, key: str, value: object) -> None:
-    """Put something else in place of a value of an event's body."""
+    """Replace a value of an event's body."""
     sql = "UPDATE event SET body = json_set(body, '$.' || ?, ?) WHERE seq = ?"
     change(folder, sql, key, value, seq)
 

@@ -132,7 +132,7 @@ def test_a_stall_of_the_robot_is_one_fault_until_it_is_cleared(
 
 
 def frozen(seconds: float) -> Health:
-    """Return readings of a robot that answers again and tells for how long it stood still."""
+    """Return readings of a robot that answers again and reports the length of its freeze."""
     link = Reading("link", 0.0, ERROR, {"frozen": seconds})
     return tuple(link if r.device == "link" else r for r in WELL)
 

@@ -19,7 +19,7 @@ from tests.oracle.recording import record
 
 
 def main() -> int:
-    """Run the command that was given; 0 where nothing differs."""
+    """Run the given command; return 0 if nothing differs."""
     parser = argparse.ArgumentParser(prog="python -m tests.oracle", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     recorder = commands.add_parser("record", help="run the program, and keep what it says")

@@ -35,7 +35,7 @@ class Names:
         return _PATH.sub("<path>", text)
 
     def value(self, value: Any) -> Any:
-        """Return a JSON value of which the same is true."""
+        """Return the JSON value with its names normalised."""
         if isinstance(value, dict):
             return {
                 self.text(key): "<measured>" if key in MEASURED else self.value(one)

@@ -110,7 +110,7 @@ def _seed_commands(seed: int) -> list[Answer]:
 
 
 def _run(folder: Path, commands: list[Answer]) -> None:
-    """Give commands to the program in a data folder of its own, and keep what it says."""
+    """Run commands of the program in a new data folder, and record their output."""
     folder.mkdir()
     with TemporaryDirectory(prefix="tangy-oracle-") as data:
         for name, words, typed in commands:

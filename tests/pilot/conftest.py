@@ -143,7 +143,7 @@ class TangyPilot(Pilot[None]):
 
 
 class StillClock:
-    """A clock that goes on only when it is told to."""
+    """A clock that the test advances."""
 
     def __init__(self, now: float = 0.0) -> None:
         self.now = now
@@ -204,7 +204,7 @@ def _parse_once(
     tie_breaker: int = 0,
     scope: str = "",
 ) -> list[RuleSet]:
-    """Parse a style sheet once for all programs that tests start, not anew for each.
+    """Parse a style sheet once for all programs that tests start.
 
     Textual keeps what it parsed for one program, of which a person starts one and tests a thousand.
     """

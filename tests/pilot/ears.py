@@ -68,7 +68,7 @@ class FakeEars:
         self.changed()
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
-        """Take note of what followed."""
+        """Record the following event."""
         self.followed += events
 
     def talk(self) -> None:
@@ -90,7 +90,7 @@ class FakeEars:
         self.asks = asks
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
-        """Take note of what can be said."""
+        """Record the phrasebook."""
         self.books.append(phrasebook)
 
     def hear(self, *heard: Say | StopCommand | Reply) -> None:

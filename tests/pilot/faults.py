@@ -79,7 +79,7 @@ async def sure(pilot: TangyPilot, key: str) -> None:
 
 
 def kinds_of(fault: Fault) -> list[str]:
-    """Return what was done about a fault, in order."""
+    """Return the moves about a fault, in order."""
     return [move.kind for move in fault.moves]
 
 

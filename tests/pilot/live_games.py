@@ -30,7 +30,7 @@ PEOPLE = ("user1", "user2", "user3", "user4")
 
 
 class HeldLink(FakeLink):
-    """A robot that does nothing to its end before it is let."""
+    """A robot whose behaviours end only when the test allows it."""
 
     def __init__(self) -> None:
         super().__init__(PEOPLE)
@@ -40,7 +40,7 @@ class HeldLink(FakeLink):
         self.most = 10_000
         """So many lines it says, and then does nothing to its end."""
         self.held_by: set[str] = set()
-        """Who has stopped it and not let it go since."""
+        """The owners of stops that are not released."""
         self.released: list[str] = []
         """Who has let it go each time, "" for all."""
 
@@ -75,7 +75,7 @@ class HeldLink(FakeLink):
             sleep(0.005)
 
     def restart(self) -> None:
-        """Become another robot process that is well, when it is let."""
+        """Become a new healthy robot process, when the test allows it."""
         self.be_let()
         self.silent = ""
         self.state = replace(self.state, health=FakeLink(PEOPLE).state.health, failed="")
@@ -120,7 +120,7 @@ def live(pilot: TangyPilot) -> LiveScreen:
 
 
 async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
-    """Wait until what is drawn stays as it is for five looks."""
+    """Wait until the screen is unchanged for five looks."""
     looks: list[str] = []
     async with asyncio.timeout(20):
         while len(looks) < 5 or len(set(looks[-5:])) > 1:

@@ -34,7 +34,7 @@ class Terminal:
         self._stream = pyte.Stream(self.screen)
 
     def write(self, text: str) -> None:
-        """Show what is written."""
+        """Show the written output."""
         self._stream.feed(text.replace("\n", "\r\n"))
 
     def cells(self) -> list[list[Any]]:

@@ -58,7 +58,7 @@ def learnt(tmp_path_factory: pytest.TempPathFactory) -> DrillPolicy:
 def make(
     workspace: Workspace, learnt: DrillPolicy, clock: StillClock
 ) -> Callable[..., DrillScreen]:
-    """Make the screen of a drill: (rounds, seed) -> screen."""
+    """A factory of drill screens: (rounds, seed) -> screen."""
     rules = load_faults(workspace.robot).rules
     few = FaultBook(tuple(rule for rule in rules if rule.code in FEW), "few")
 

@@ -86,7 +86,7 @@ def changed(workspace: Workspace, before: list[int]) -> bool:
 
 
 async def back(pilot: TangyPilot, screen: object) -> None:
-    """Answer nothing, and close whatever a letter has opened."""
+    """Close any dialog that a letter has opened, without an answer."""
     for _ in range(4):
         if pilot.app.screen is screen:
             return
@@ -119,11 +119,11 @@ async def test_no_letter_changes_stored_data_on_any_panel(
 
 
 GAME_MOVES = {"p": "pause or go on", "full_stop": "one step"}
-"""What a letter may do without asking: the simulated game goes on, or stands."""
+"""The effect that a letter may have unasked: the simulated game runs or pauses."""
 
 PACE = ("less_than_sign", "greater_than_sign")
 STAFF_SAYS = {"i": "autonomy", "c": "call again", "o": "take over"}
-"""In a live game: what is noted of staff at once, and can be said otherwise the next moment."""
+"""Remarks of staff in a live game, which take effect at once and can be revised."""
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ NEW_NAME = "Xanthippe"
 
 @pytest.fixture
 def spoken() -> list[str]:
-    """What was said aloud."""
+    """The spoken phones."""
     return []
 
 

@@ -34,7 +34,7 @@ FEW = ForestSettings(trees=5)
 
 @pytest.fixture
 def policy(workspace: Workspace, cover: Cover) -> Policy:
-    """A policy that knows all that comes about."""
+    """A policy without gaps."""
     return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), FEW)
 
 
@@ -64,7 +64,7 @@ def told(pilot: TangyPilot) -> str:
 
 
 async def over(pilot: TangyPilot) -> PlayScreen:
-    """Skip to the end of the game."""
+    """Skip to the end of the current game."""
     screen = pilot.app.screen
     assert isinstance(screen, PlayScreen)
     await pilot.press("E", "y")

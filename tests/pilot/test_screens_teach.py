@@ -287,7 +287,7 @@ async def test_why_shows_the_decision_learnt_so_far(run: Run, workspace: Workspa
 
 
 async def ended(pilot: Pilot[None], name: str) -> None:
-    """Wait until what is thought over beside the screen is known."""
+    """Wait until a background computation of the screen ends."""
     for _ in range(200):
         await pilot.pause(0.02)
         if all(worker.is_finished for worker in pilot.app.workers if worker.name == name):

@@ -31,7 +31,7 @@ async def type_words(pilot: Pilot[None], words: str) -> None:
 
 
 def now(pilot: Pilot[None]) -> str:
-    """Return the line that says what is going on."""
+    """Return the line with the current situation."""
     return str(pilot.app.screen.query_one("#now", Static).render())
 
 

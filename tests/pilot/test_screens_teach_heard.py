@@ -54,7 +54,7 @@ def bar_of(pilot: TangyPilot) -> CommandBar:
 
 
 def log_of(pilot: TangyPilot) -> str:
-    """Return what the log of the teaching screen says."""
+    """Return the text of the log of the teaching screen."""
     screen = next(s for s in pilot.app.screen_stack if isinstance(s, TeachScreen))
     return " ".join(screen.query_one(LogView).sentences)
 

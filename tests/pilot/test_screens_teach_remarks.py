@@ -33,7 +33,7 @@ def program(workspace: Workspace) -> Program:
 
 
 async def contradict(pilot: Pilot[None]) -> RemarkDialog:
-    """Teach as Bea, and return what is remarked."""
+    """Teach as Bea, and return the remark."""
     for phrase in ("greet everyone", "tell a joke"):
         await pilot.press(*phrase, "enter")
         await pilot.pause()

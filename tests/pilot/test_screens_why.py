@@ -36,7 +36,7 @@ def data_folder(taught: Path) -> Path:
 
 
 def why_of(workspace: Workspace, behaviour: str) -> DecisionReasons:
-    """Return the grounds of the first situation in which something is done."""
+    """Return the explanation of the first situation with a decision."""
     policy, _ = load_policy(workspace.store, workspace.activity)
     shown = read_library(workspace.store, workspace.activity.name).demonstrations
     expected = workspace.activity.expected

@@ -39,7 +39,7 @@ STATES = {"teach": "2 demonstrations, 1 unfinished", "play": "learn first"}
 
 
 class Plain(TangyScreen[None]):
-    """A screen that notes what it is told."""
+    """A screen that records its messages."""
 
     TITLE = "Plain"
     HELP = "A plain screen."
@@ -238,7 +238,7 @@ async def test_help_over_a_question_explains_the_question(run: Run) -> None:
 
 
 class Homely(TangyApp):
-    """Notes what was chosen at home."""
+    """Records the choices at home."""
 
     def __init__(self) -> None:
         super().__init__(lambda: HomeScreen(lambda: STATES), clock=lambda: 0.0)

@@ -55,7 +55,7 @@ class Window:
         return "\n".join(self.screen.display)
 
     def read(self, seconds: float) -> bytes:
-        """Take what is written within so many seconds, at most one piece of it."""
+        """Read at most one piece of output within some seconds."""
         if not select.select([self.terminal], [], [], seconds)[0]:
             return b""
         try:
@@ -97,7 +97,7 @@ class Window:
         return self.process.returncode
 
     def close(self) -> None:
-        """End what is left."""
+        """End the process, if it still runs."""
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()

@@ -243,7 +243,7 @@ class FakeTerminal:
         self.trip.begin((80, 24))
 
     def answer(self, time: float) -> None:
-        """Answer what was asked last, at this time."""
+        """Answer the last query, at this time."""
         place = re.search(r"\[(\d+);(\d+)H\x1b\[6n", self.written[-1])
         assert place is not None
         self.trip.reported(int(place[2]) - 1, int(place[1]) - 1, time)

@@ -27,7 +27,7 @@ LARGE = (160, 45)
 
 
 class RoomScreen(TangyScreen[None]):
-    """A room that fills the screen, and what it tells."""
+    """A room that fills the screen, and its messages."""
 
     def __init__(self, sample: Sample) -> None:
         super().__init__()

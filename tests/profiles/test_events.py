@@ -154,7 +154,7 @@ def records_of(kind: Any) -> st.SearchStrategy[Any]:
 
 
 def values(hint: Any) -> st.SearchStrategy[Any]:
-    """Return a strategy of what stands for a type."""
+    """Return a strategy for the values of a type."""
     origin, args = get_origin(hint), get_args(hint)
     if hint is Any:
         return st.none() | WORDS

@@ -40,7 +40,7 @@ def killed(store: Store, folder: Path, *, but: str = "") -> Path:
 
 
 def said(folder: Path) -> list[str]:
-    """Return what a console says of a log when it opens it, which `check` says as well."""
+    """Return the notices of a console about a log, which `check` gives as well."""
     with Store.open(folder, write=False) as console:
         assert [s for s in console.check() if "gone" in s] == console.notices
         return console.notices

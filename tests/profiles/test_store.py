@@ -451,7 +451,7 @@ def fill(folder: Path, events: int = 500) -> None:
 
 
 def scribble(path: Path) -> bytes:
-    """Overwrite the middle of a file, and return what it is then."""
+    """Overwrite the middle of a file, and return its new content."""
     old = path.read_bytes()
     new = old[: len(old) // 2] + b"\xa5" * 20_000 + old[len(old) // 2 + 20_000 :]
     path.write_bytes(new)

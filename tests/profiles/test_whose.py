@@ -43,7 +43,9 @@ def test_the_selector_means_the_first_of_several_people(game: DeclaredGame) -> N
     stage, about = game.stage()
     assert (stage.name, about) == ("right", "cat")
     assert ("whose guess is right", "cat") in joint_state(game).whom
-    game.observe("guess", "cat", "a fish")  # whoever changes an answer is the last to have it
+    game.observe(
+        "guess", "cat", "a fish"
+    )  # a person who changes the answer becomes the last to have it
     assert (game.whom(RIGHT), game.whom(WRONG)) == ("ann", "ben")
     game.observe("here", "ann", "no")
     assert game.whom(RIGHT) is None

@@ -55,7 +55,7 @@ def commands(page: Path) -> Iterator[list[str]]:
 
 
 def refused(words: list[str]) -> str:
-    """Say what the program would not know of a command's words: a verb, or an option."""
+    """Return the first word of a command that the program does not know: a verb or an option."""
     known: Any = typer.main.get_command(app)
     context = typer.Context(known)
     options = {option for one in known.params for option in (*one.opts, *one.secondary_opts)}

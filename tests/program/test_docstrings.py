@@ -23,7 +23,7 @@ SAME_AS_INNER = "As the inner method does."
 
 
 def functions(source: Path) -> Iterator[tuple[Function, str]]:
-    """Yield the public functions of a module, each with what its docstrings say."""
+    """Yield the public functions of a module, each with its docstrings."""
 
     def inside(body: list[ast.stmt], about: str) -> Iterator[tuple[Function, str]]:
         for node in body:
@@ -47,7 +47,7 @@ def types(function: Function) -> list[str]:
 
 
 def missing(word: str, says: re.Pattern[str]) -> list[str]:
-    """Return where a type is taken or returned and the docstring lacks what it should say."""
+    """Return functions with a type in their signature whose docstring does not describe it."""
     found = []
     for floor in ("hw", "profiles", "sim", "tangy_tui"):
         for source in sorted((HOUSE / floor).rglob("*.py")):

@@ -23,7 +23,7 @@ from tests.hw.speakers import Speaker, program
 
 
 def data_folder(folder: Path) -> Finding:
-    """Return what is found of a data folder."""
+    """Return the finding about a data folder."""
     return next(f for f in examine(folder, lambda _: None) if f.part == "data folder")
 
 

@@ -99,7 +99,7 @@ def test_json_output_contains_only_the_document(tangy: Tangy, tmp_path: Path) ->
 
 
 def test_the_right_answers_of_the_document_get_all_points(tangy: Tangy, tmp_path: Path) -> None:
-    """The document of a first run says what would have been right; the second run answers so."""
+    """The document of a first run has the right answers; the second run gives them."""
     asked = ("drill", "--json", "--rounds", "1", "--data", tmp_path / "d", "--seed")
     for seed in range(1, 30):
         first = json.loads(tangy(*asked, seed, stdin=KEYS + "n\n").stdout)

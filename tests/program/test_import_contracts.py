@@ -15,7 +15,7 @@ def copy(tmp_path: Path) -> Path:
 
 
 def lint(folder: Path) -> str:
-    """Check the contracts of a copy; return what is said of those that are broken."""
+    """Check the contracts of a copy; return the report on broken ones."""
     check = "from importlinter.cli import lint_imports; raise SystemExit(lint_imports())"
     done = run_on(folder, "-c", check)
     return done.stdout + done.stderr if done.returncode else ""

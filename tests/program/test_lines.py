@@ -41,7 +41,7 @@ def told(
     resume: bool = True,
     again: Again | None = None,
 ) -> list[str]:
-    """Hold a session in which these lines are typed; return what was said."""
+    """Hold a session in which these lines are typed; return its output."""
     typed = iter(lines)
     said: list[str] = []
     teaching = workspace.teaching(teacher, 1, again=again)
@@ -335,7 +335,7 @@ def test_a_stopped_game_gives_its_reason(workspace: Workspace, cover: Cover) -> 
 
 
 def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
-    """Play a game by a policy that was not shown its first situation; return what is said."""
+    """Play a game by a policy without its first situation; return the output."""
     teaching = workspace.teaching("Ada", 1)
     teaching.begin(resume=False)
     for phrase in ("greet everyone", "next number"):

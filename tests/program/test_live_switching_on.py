@@ -77,7 +77,7 @@ def test_a_cancelled_opening_closes_the_robot() -> None:
 
 @pytest.fixture
 def hang_ups() -> Iterator[None]:
-    """Let a hang-up be heard, even where the tests themselves are run by nohup."""
+    """Handle hang-ups, even if the tests themselves run under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
     signal.signal(signal.SIGHUP, before)
