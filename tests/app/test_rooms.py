@@ -157,7 +157,7 @@ def test_a_game_is_resumed_and_watched_in_its_room(taught: Path, tmp_path: Path)
         ('title = "Lounge"', 'title = "Lounge"\nchairs = 5', "chairs = 5 (line 4)"),
     ],
 )
-def test_a_mistake_is_told_with_its_line(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_a_mistake_is_reported_with_its_line(tmp_path: Path, old: str, new: str, said: str) -> None:
     path = lounge(tmp_path)
     path.write_text(path.read_text().replace(old, new, 1))
     with pytest.raises(ProfileError) as caught:

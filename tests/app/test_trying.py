@@ -23,7 +23,7 @@ def test_several_actions_of_a_person_after_a_step_are_listed() -> None:
     assert any(", " in did for did in told)
 
 
-def test_what_people_do_is_told_in_the_words_of_the_file_and_kept_as_facts() -> None:
+def test_actions_of_people_are_worded_by_the_file_and_kept_as_facts() -> None:
     steps = list(tried_game(declared("trivia"), 3, 1))
     told = {did for step in steps for did in step.doing.values()}
     assert "it is right" in told or "it is wrong" in told

@@ -148,7 +148,7 @@ class TestStates:
 class TestReadings:
     """The contract with the diagnosis: the facts of the robot's profile, in their ranges."""
 
-    def test_it_has_the_facts_that_the_profile_names(self) -> None:
+    def test_the_reading_has_the_facts_of_the_profile(self) -> None:
         film = Film()
         film.show(FINE, 2)
         reading = film.watch.at(film.now).reading("camera")

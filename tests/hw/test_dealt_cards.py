@@ -169,7 +169,7 @@ def test_staff_hear_of_a_doubtful_card_once_in_a_visit(world: LiveWorld, link: F
     assert len(world.cards.news) == 3
 
 
-def test_a_card_given_by_staff_overrides_what_was_seen() -> None:
+def test_a_card_given_by_staff_overrides_the_seen_one() -> None:
     dealt = DealtCards()
     assert dealt.learn("user1", NEIGHBOURS)
     assert not dealt.learn("user2", NEIGHBOURS)

@@ -108,7 +108,9 @@ class TestPeopleWhoSetOff:
 
     @pytest.mark.parametrize("walks", [1.0, 1.2])
     @pytest.mark.parametrize("gap", [0.64, 0.76, 0.88])
-    def test_it_stands_before_they_meet(self, gap: float, walks: float) -> None:
+    def test_the_robot_stops_before_it_meets_a_walking_person(
+        self, gap: float, walks: float
+    ) -> None:
         assert speed_when_met(gap, walks) == 0.0
 
 

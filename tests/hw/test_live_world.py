@@ -70,7 +70,7 @@ def called_of(world: LiveWorld, card: int) -> int:
     return called_cells(BINGO.deck, numbers, set(world.called))
 
 
-def test_a_number_is_said_shown_and_called(world: LiveWorld, link: FakeLink) -> None:
+def test_a_number_is_spoken_shown_and_called(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     outcome = do(world, "call number")
     (number,) = outcome.numbers

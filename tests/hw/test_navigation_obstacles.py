@@ -113,7 +113,7 @@ class TestPeople:
         assert drive.near and np.median(drive.near) <= 0.15
 
     @pytest.mark.slow
-    def test_while_it_creeps_up_to_a_goal_beside_somebody_it_says_for_whom(self) -> None:
+    def test_the_robot_explains_a_slow_approach_to_a_goal_beside_a_person(self) -> None:
         goal, person = Pose(5.0, 2.0, 0.0), Person(5.66, 2.0, 1.0)
         drive = Drive(Pose(4.8, 2.0, 0.0), goal, [person], np.random.default_rng(3)).run()
         assert drive.arrived and not drive.touches

@@ -39,9 +39,7 @@ def replans(gap: float, heading: float, seed: int) -> bool:
 
 @pytest.mark.parametrize("heading", HEADINGS)
 @pytest.mark.parametrize("gap", [0.1, 0.15, 0.19])
-def test_a_path_nearer_than_a_fifth_of_a_metre_to_a_torso_is_given_up(
-    gap: float, heading: float
-) -> None:
+def test_a_path_within_20_cm_of_a_torso_is_replanned(gap: float, heading: float) -> None:
     assert replans(gap, heading, seed=3)
 
 

@@ -63,7 +63,7 @@ def test_a_robot_asks_a_silent_person_again_in_the_words_of_the_file(
     assert asked == [True] * activity.asking.visit + [False, False]
 
 
-def test_a_person_asked_again_has_the_whole_pause_to_answer_whatever_the_clock(
+def test_a_repeated_question_allows_the_whole_pause_at_any_time(
     activity: DeclaredActivity,
 ) -> None:
     link = FakeLink(PEOPLE)

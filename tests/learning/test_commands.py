@@ -342,7 +342,7 @@ class TestCompleting:
         assert BOOK.complete("Go  to user t") == ("go to user two", "go to user three")
 
     @given(st.sampled_from(sorted(BOOK.phrases)), st.integers(0, 60))
-    def test_completions_begin_with_what_was_typed(self, phrase: str, length: int) -> None:
+    def test_completions_begin_with_the_typed_text(self, phrase: str, length: int) -> None:
         found = BOOK.complete(phrase[:length])
         assert found
         assert all(completion.startswith(phrase[:length]) for completion in found)

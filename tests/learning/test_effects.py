@@ -191,7 +191,7 @@ def test_an_undemonstrated_behaviour_has_no_expected_effect(
     assert "nothing known" in str(found[0])
 
 
-def test_a_mismatch_is_said_in_words() -> None:
+def test_a_mismatch_is_described_in_words() -> None:
     mismatch = Mismatch("navigate to user", "robot's place", ("a", "b"), "front")
     assert str(mismatch) == "navigate to user: robot's place should be a or b, is front"
 

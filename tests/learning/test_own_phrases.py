@@ -49,7 +49,7 @@ def meant(teaching: TeachingSession, words: str) -> str | None:
     return command.behaviour if command is not None and command.confidence == 1 else None
 
 
-def test_only_the_next_command_can_be_what_was_meant(workspace: Workspace) -> None:
+def test_only_the_next_command_can_explain_unknown_words(workspace: Workspace) -> None:
     teaching = session(workspace)
     say(teaching, WORDS)
     teaching.apply(Say("call number"))

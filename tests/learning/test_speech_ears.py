@@ -200,7 +200,9 @@ class TestPushToTalk:
         assert here.told == [HearingNote("no words")]
         assert here.heard == []
 
-    async def test_what_cannot_be_decoded_is_said_and_the_next_is_heard(self, enter: Enter) -> None:
+    async def test_a_failed_utterance_is_reported_and_the_next_is_decoded(
+        self, enter: Enter
+    ) -> None:
         here = await enter().ready()
         here.decoder.failures += [SpeechUnavailable("It died.")] * 4
         for _ in range(4):
@@ -517,7 +519,7 @@ class TestHandsFree:
         if end:
             await here.over()
 
-    async def test_a_question_drops_what_comes_before_it(self, enter: Enter) -> None:
+    async def test_a_question_drops_earlier_speech(self, enter: Enter) -> None:
         here = await enter(hands_free=True, answers=True).ready("listening")
         await here.source.feed(sound("c"))
         here.ears.asking(True)
@@ -590,7 +592,9 @@ class TestRecordings:
         assert here.words == ["call number", "tell a joke", "stop"]
         assert here.told == [HearingNote("recording over")]
 
-    async def test_what_cannot_be_decoded_is_said_and_the_next_is_heard(self, enter: Enter) -> None:
+    async def test_a_failed_utterance_is_reported_and_the_next_is_decoded(
+        self, enter: Enter
+    ) -> None:
         here = enter(live=False)
         await soon(lambda: bool(FakeRecogniser.made))
         here.decoder.failures.append(SpeechUnavailable("It died."))

@@ -179,7 +179,7 @@ def test_a_behaviour_interrupted_by_a_critical_fault_is_one_fault() -> None:
     assert diagnosed(found, book(mine)) == ["dead"]
 
 
-def test_later_rules_explain_what_a_critical_fault_does_not() -> None:
+def test_later_rules_explain_symptoms_beside_a_critical_fault() -> None:
     first = rule("dead", FAILED, criticality="critical")
     later = rule("left", Condition("mismatch.others' requests", "is", "fewer"))
     found: dict[str, Fact] = {"base.state": "ERROR", **PLACE, **FEWER, "behaviour.completed": False}

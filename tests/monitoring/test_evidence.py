@@ -80,7 +80,7 @@ def test_a_refusal_counts_only_for_the_attended_person(detector: Detector) -> No
 
 
 @pytest.mark.parametrize("ends", ["a request is followed", "the game"])
-def test_who_refused_in_a_whole_visit_counts_as_refusing_until_something_ends_it(ends: str) -> None:
+def test_a_person_who_refused_in_a_visit_counts_as_refusing(ends: str) -> None:
     settles = Effects({"move card closer": {"what was asked about": frozenset({"settled"})}})
     detector = Detector(BINGO, load_robot(), settles)
     unseen = (UserState("user1", "occluded", "AR"), IDLE)

@@ -126,7 +126,7 @@ async def test_a_question_is_answered_in_place_and_the_game_plays_to_its_end(
 
 
 @pytest.mark.slow
-async def test_a_message_says_what_was_learnt(
+async def test_a_message_names_the_learnt_answer(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy, speed=1), notifications=True) as pilot:

@@ -135,7 +135,7 @@ async def test_a_key_that_must_wait_for_the_answer_says_so_in_the_panel(
 
 
 @pytest.mark.slow
-async def test_the_keys_after_a_stop_show_what_still_works(
+async def test_the_keys_after_a_stop_list_the_working_ones(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy), notifications=True) as pilot:

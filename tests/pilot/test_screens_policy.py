@@ -25,7 +25,7 @@ def taught(workspace: Workspace) -> Workspace:
     return workspace
 
 
-async def test_quick_work_leaves_no_notice_that_it_goes_on(run: Run, workspace: Workspace) -> None:
+async def test_quick_work_leaves_no_progress_notice(run: Run, workspace: Workspace) -> None:
     program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:
         program.call_next(program.in_thread, "Tangy is working ...", int)  # before it is drawn

@@ -327,7 +327,7 @@ async def test_unknown_words_stay_selected(run: Run, workspace: Workspace) -> No
         assert bar.text == "greet everyone"
 
 
-async def test_tab_lists_only_what_can_be_done_now(run: Run, workspace: Workspace) -> None:
+async def test_tab_lists_only_possible_commands(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await pilot.press("tab")
         await pilot.pause()

@@ -331,7 +331,7 @@ async def test_a_yes_without_a_question_does_nothing(run: Run, workspace: Worksp
 
 
 @pytest.mark.slow
-async def test_a_phrase_is_said_while_the_page_of_phrases_is_open(
+async def test_spoken_commands_work_while_the_page_of_phrases_is_open(
     run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars(hands_free=True, answers=True)
@@ -352,7 +352,7 @@ async def test_a_phrase_is_said_while_the_page_of_phrases_is_open(
 
 
 @pytest.mark.slow
-async def test_without_a_question_no_answer_is_missed_and_a_yes_is_told(
+async def test_only_a_spoken_answer_is_reported_without_a_question(
     run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars(hands_free=True, answers=True)

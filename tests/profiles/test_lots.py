@@ -89,7 +89,7 @@ def test_people_on_the_bench_learn_the_turn_from_the_robot(
         assert people.known.whom("whose turn") == whose
 
 
-def test_the_circle_goes_by_the_seats_whatever_the_lot_drew(raffle: DeclaredActivity) -> None:
+def test_the_circle_follows_the_seats_and_not_the_lot(raffle: DeclaredActivity) -> None:
     games = (world(raffle, seed).game for seed in range(20))
     game = next(one for one in games if one.players == ("user3", "user1", "user2"))
     assert game.circle == PLAYERS

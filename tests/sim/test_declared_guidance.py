@@ -122,7 +122,7 @@ def test_two_guided_games_show_situations_that_occur_once_in_a_game(name: str, c
             world_of_games.execute(action)
 
 
-def test_what_is_announced_comes_after_the_next_command() -> None:
+def test_an_announced_situation_follows_the_next_command() -> None:
     activity, announced = declared("trivia"), 0
     for seed in range(3):
         world = GuidedDeclaredWorld(
