@@ -204,3 +204,26 @@ def test_a_script_of_answers_controls_a_recording_by_lines(
     assert b"-> greet everyone" in done.stdout
     assert b"-> call number" in done.stdout
     assert done.stderr == b""
+
+
+@pytest.mark.slow
+def test_an_activity_without_cards_is_taught_by_voice_alone(
+    voices: Voices, tangy: str, tmp_path: Path
+) -> None:
+    said = ("welcome everyone", "yes please", "ask the question", "yes please")
+    file = tmp_path / "trivia.wav"
+    file.write_bytes(wav(bytes(2 * RATE).join(voices.say(text) for text in said)))
+    script = tmp_path / "none"
+    script.write_text("")
+    words = ("teach", "--plain", "--activity", "trivia", "--guided", "--seed", "11")
+    heard = ("--mic", str(file), "--spoken-answers", "--script", str(script))
+    done = subprocess.run(  # noqa: S603 - our own program
+        [tangy, *words, *heard, "--data", str(tmp_path / "data")],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=True,
+    )
+    assert "-> welcome everyone" in done.stdout
+    assert "-> ask question" in done.stdout
+    assert "do not know what" not in done.stdout
