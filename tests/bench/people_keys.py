@@ -2,7 +2,8 @@
 
 Run by hand: `python -m tests.bench.people_keys --drives 100`. Whoever holds the keys steers at the
 nearest person or at a wall, at full speed, and never lets go; the people and how touches count are
-those of `people_drives`. No real person or base took part.
+those of `people_drives`. With `--encounters`, a person stands straight ahead instead, and walks at
+the robot as soon as it has come near. No real person or base took part.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from math import atan2, hypot, pi
 
 import numpy as np
 
-from tangy_hw.device_protocols import STILL, Odometry, Scan, Twist
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.people_tracker import PeopleTracker
 from tangy_hw.navigation.poses import wrap
 from tangy_hw.robot_process.hand_drive import HandDrive
 from tangy_sim.device_simulator.lidar import cast
@@ -23,17 +25,23 @@ from tests.bench.people_scenes import SCENES
 from tests.bench.people_simulation import (
     LATE,
     MAP,
+    MOVES,
     NO_SCAN,
     ROBOT,
     TICK,
     WALLS,
     Drive,
+    Person,
+    disc,
     followed,
 )
 from tests.hw.raycast import Wheels
 
 AMONG = ("standing", "walking", "wandering", "steps in", "group", "wheelchair")
 SECONDS, AIMS = 30.0, 4.0  # s: a drive, and until another person or wall is steered at
+KNOWN = 2.0  # s after which the robot knows that a person stands
+PACES = (0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.2)  # m/s at which they set off
+GAPS = np.arange(0.1, 1.3, 0.06)  # m between them and the robot when they set off
 ROUND = np.linspace(-pi, pi, 72, endpoint=False)
 
 
@@ -76,6 +84,41 @@ def _commanded(hand: HandDrive, navigator: Navigator, scan: Scan, now: float) ->
     return STILL if told is None else told
 
 
+def speed_when_met(gap: float, walks: float, seed: int = 5) -> float:
+    """Drive at a person who stands; return how fast the robot drove when they met, in m/s.
+
+    The person walks at the robot, `walks` m/s fast, as soon as it is `gap` m away from them.
+    """
+    person, start, limits = Person(5.0, 1.5, 0.5), Pose(2.9, 1.5, 0.0), MotionLimits()
+    drive = Drive(start, start, [person], np.random.default_rng(seed))
+    hand, tracker, late = HandDrive(limits), PeopleTracker(), STILL
+    while drive.time < SECONDS:
+        scan = drive.look()
+        tracks = tracker.update(drive.pose, scan, TICK)
+        if drive.time > KNOWN:
+            hand.tell(Twist(limits.max_speed, 0.0), drive.time)
+        around = [one.seen_from(drive.pose) for one in tracks]
+        told = hand.command(scan, drive.time, None, around) or STILL
+        drive.twist, late = followed(drive.twist, late), told
+        drive.move()
+        stands = drive.time > KNOWN + 1.0 and drive.twist.forward < MOVES
+        if person.gap(drive.pose, disc) < gap or stands:
+            person.step = lambda one, _: one.walk(pi, walks)
+        for touch in drive.touches:
+            return 0.0 if touch.kind == "stood" else touch.speed
+    raise AssertionError("they never met")
+
+
+def encounters(seed: int) -> str:
+    """Let people set off at several speeds and distances; count those who met a driving robot."""
+    met = [speed_when_met(gap, walks, seed) for walks in PACES for gap in GAPS]
+    drove = [speed for speed in met if speed]
+    return (
+        f"{len(met)} people set off: {len(drove)} met the robot while it drove, "
+        f"at {max(drove, default=0.0):.2f} m/s at most"
+    )
+
+
 def row(found: Sequence[tuple[Drive, bool]]) -> str:
     """Sum drives up in a line."""
     ahead = [t.speed for drive, _ in found for t in drive.touches if t.kind == "ahead"]
@@ -91,7 +134,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--drives", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--encounters", action="store_true")
     options = parser.parse_args()
+    if options.encounters:
+        print(encounters(options.seed))
+        return
     print(row([by_keys(number, options.seed) for number in range(options.drives)]))
 
 

@@ -14,14 +14,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.device_protocols import STILL, Pose, Scan, Stamped, Twist
+from tangy_hw.device_protocols import STILL, Scan, Stamped, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.navigation.people_tracker import PeopleTracker
 from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, OVERRIDE, HandDrive
 from tangy_hw.robot_process.wheels import Wheels
 from tangy_profiles.robot import load_robot
-from tests.bench.people_simulation import TICK, Drive, Person, disc, followed
+from tests.bench.people_keys import speed_when_met
 from tests.hw.live_bodies import ToldBody
 from tests.hw.ros_links import soon
 from tests.hw.test_robot_lines import Spoken, spoken
@@ -112,26 +111,6 @@ class TestPeopleWhoSetOff:
         self, gap: float, walks: float
     ) -> None:
         assert speed_when_met(gap, walks) == 0.0
-
-
-def speed_when_met(gap: float, walks: float) -> float:
-    """Drive by keys at full speed at a person; return how fast the robot drove when they met."""
-    person, start = Person(5.0, 1.5, 0.5), Pose(2.9, 1.5, 0.0)
-    drive = Drive(start, start, [person], np.random.default_rng(5))
-    hand, tracker, late, near = HandDrive(LIMITS), PeopleTracker(), STILL, False
-    for tick in range(150):
-        scan, now = drive.look(), tick * TICK
-        tracks = tracker.update(drive.pose, scan, TICK)
-        if tick >= 20:  # by then it knows that the person stands
-            hand.tell(Twist(LIMITS.max_speed, 0.0), now)
-        told = hand.command(scan, now, None, [one.seen_from(drive.pose) for one in tracks])
-        drive.twist, late = followed(drive.twist, late), told or STILL
-        drive.move()
-        near |= person.gap(drive.pose, disc) < gap
-        person.step = (lambda one, _: one.walk(math.pi, walks)) if near else person.step
-        for touch in drive.touches:
-            return 0.0 if touch.kind == "stood" else touch.speed
-    raise AssertionError("they never met")
 
 
 NUMBERS = st.floats() | st.sampled_from([5.0, -5.0, 0.51, 1e308, math.nan, math.inf, -math.inf])
