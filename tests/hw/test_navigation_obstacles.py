@@ -41,6 +41,21 @@ class TestObstacles:
         assert robot.arrives() and not robot.touched
 
     @pytest.mark.slow
+    def test_obstacles_that_seem_to_walk_still_block_the_path(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        robot, goal = DrivenRobot(), at_seat(3)
+        robot.navigator.go(goal)
+        robot.run(2)
+        robot.boxes += [(x / 10, 2.7, x / 10 + 0.15, 2.85) for x in range(0, 100, 3)]  # legs
+        assert robot.run(30, lambda: robot.navigator.state == "blocked")
+        with monkeypatch.context() as jumping:
+            jumping.setattr("tangy_hw.navigation.surroundings.WALKS", -1.0)
+            assert not robot.navigator.finds_way(goal)
+        robot.boxes.clear()
+        assert robot.run(5, lambda: robot.navigator.finds_way(goal))
+
+    @pytest.mark.slow
     def test_a_robot_enclosed_by_chairs_reports_no_path(self) -> None:
         robot = DrivenRobot()
         robot.navigator.go(at_seat(0))

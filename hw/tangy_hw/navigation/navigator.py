@@ -158,9 +158,15 @@ class Navigator:
         self._stop_following()
 
     def finds_way(self, goal: Pose) -> bool:
-        """Return whether there is a path from here to a goal, past all known obstacles."""
-        estimate = self._estimate
-        return estimate is not None and self._plan(estimate.pose, goal) is not None
+        """Return whether a path leads from here past everything that is seen.
+
+        What seems to walk counts as well: it may be a chair, and the path would not be free.
+        """
+        if self._estimate is None:
+            return False
+        here = self._estimate.pose
+        ends = (here.x, here.y), (goal.x, goal.y)
+        return plan(self.map, *ends, self._around.points, self._radius, self._keep) is not None
 
     # -------------------------------------------------------------- state
     @property
