@@ -104,4 +104,4 @@ def test_a_strategy_works_only_after_compliance_and_with_a_choice(
         strategy = words.split()[0]
         assert beliefs[strategy].complied and strategy in on and len(on) > 1
     if not any(yes for yes, _ in counts):
-        assert "work" not in words
+        assert not re.search(r"\bworks?\b", words)
