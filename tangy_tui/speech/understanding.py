@@ -215,12 +215,8 @@ def replied(
     form.
     """
     given = answered(evidence, settings, people) if answers else None
-    if (
-        given is not None
-        and given.confidence >= BOTH_HEARD
-        and not _stops(evidence.words, evidence)
-    ):
-        return given, None  # a stop that only the third decoder hears is none
+    if given is not None and given.confidence >= BOTH_HEARD:
+        evidence = replace(evidence, stop="")  # both other decoders hear an answer
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
         return Say(evidence.words, 1.0, None), None

@@ -58,6 +58,18 @@ def test_an_answer_that_both_decoders_hear_does_not_stop_the_robot(
     assert isinstance(said, StopCommand) is stops
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [("carry on", Say("carry on", 1.0, None)), ("number two", Reply(yes=False, alternative=2))],
+)
+def test_staff_are_heard_before_people_whose_answer_is_the_same(
+    text: str, meant: Say | Reply
+) -> None:
+    evidence = AcousticEvidence(text, text, 0.0, 1.0, 1.0)
+    said, _ = replied(evidence, USUAL, ("yes", "no"), IN_GAMES, {text: "an answer"}, answers=True)
+    assert said == meant
+
+
 def test_the_stop_decoder_knows_the_answers_as_other_talk() -> None:
     book = Phrasebook(declared("trivia"), load_people(4))
     assert "honey" in wanted(book, USUAL).no_stops
