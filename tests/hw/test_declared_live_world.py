@@ -106,6 +106,15 @@ def test_a_reported_answer_counts_at_the_next_observation(world: DeclaredLiveWor
     assert dict(world.observe().facts)["answer"] == "right"
 
 
+def test_the_scene_words_what_people_do_as_the_file_does(world: DeclaredLiveWorld) -> None:
+    asked(world)
+    world.tell("user1", right(world))
+    world.tell("user2", "help")
+    world.observe()
+    assert world.scene().doing["user1"] == "it is right"
+    assert world.scene().doing["user2"] == "asks for help"
+
+
 def test_an_unknown_answer_is_refused(world: DeclaredLiveWorld) -> None:
     asked(world)
     assert not world.tell("user1", "something else")

@@ -22,6 +22,7 @@ from tangy_profiles.declared.lots import drawn_game
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.silence import silence
+from tangy_profiles.declared.situation_words import words_now
 from tangy_profiles.declared.speech import again, media, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
@@ -201,7 +202,7 @@ class DeclaredLiveWorld(LiveWorld):
             if fact == ASKING and who is not None:
                 self.requests.ask_for(who)
             if self.game.observe(fact, who, raw, observed.certainty) and who is not None:
-                self._did.setdefault(who, []).append(f"{fact}: {raw}")
+                self._did.setdefault(who, []).append(words_now(self.game, fact, who))
 
     # ------------------------------------------------------------------------ behaviours
 
@@ -390,8 +391,6 @@ class DeclaredLiveWorld(LiveWorld):
         self._listen()
         self._take_in()
         self.requests.tell(self.tracker)
-
-    # ------------------------------------------------------------------------ scene
 
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""

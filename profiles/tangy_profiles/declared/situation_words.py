@@ -6,6 +6,8 @@ name its situations (`in_words`) for layers below the text: questions, coverage,
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tangy_profiles.declared.model import Declaration, Fact, Stage
 from tangy_profiles.declared.situations import seen_facts
 from tangy_profiles.declared.vocabulary import (
@@ -19,6 +21,9 @@ from tangy_profiles.declared.vocabulary import (
     Selector,
 )
 from tangy_profiles.state import Situation
+
+if TYPE_CHECKING:
+    from tangy_profiles.declared.game import DeclaredGame
 
 NAME = "{name}"
 
@@ -97,6 +102,11 @@ def value_words(fact: Fact, value: str) -> str:
             return f"{name}: {_range(value)}"
         case _:
             return f"{name} is {value}"
+
+
+def words_now(game: DeclaredGame, fact: str, player: str | None) -> str:
+    """Describe the present value of a fact, of a player or the group."""
+    return value_words(game.declaration.facts[fact], game.value(fact, player))
 
 
 def plain_name(name: str) -> str:
