@@ -47,11 +47,13 @@ def run() -> object:
         return 0
     if (given := program_options(sys.argv[1:])) is not None:
         gc.disable()  # loading leaves no garbage; the screen collects again once it is drawn
-        from tangy_tui.verbs.opening import full_screen, open_program
+        try:
+            from tangy_tui.verbs.opening import full_screen, open_program
 
-        if full_screen():
-            return open_program(**given)
-        gc.enable()
+            if full_screen():
+                return open_program(**given)
+        finally:
+            gc.enable()
     return parsed()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 from typing import Any
@@ -45,6 +46,17 @@ def test_both_ways_open_the_same_program(
     assert cli.run() == 0
     assert cli.parsed() == 0
     assert len(opened) == 2 and opened[0] == opened[1]
+
+
+@pytest.mark.parametrize("full", [True, False])
+def test_garbage_is_collected_again_with_and_without_a_screen(
+    full: bool, opened: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["tangy"])
+    monkeypatch.setattr(opening, "full_screen", lambda: full)
+    monkeypatch.setattr(cli, "parsed", lambda: 0)
+    assert cli.run() == 0
+    assert gc.isenabled() and len(opened) == full
 
 
 @pytest.mark.parametrize(
