@@ -21,7 +21,14 @@ from tangy_tui.language.intent_model import IntentModel
 from tangy_tui.language.steering import steering_of
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.language.words import bare, words_of
-from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Say, Verification
+from tangy_tui.learning.verification import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Say,
+    Verification,
+)
 
 MOST_WORDS = 12
 """Longer sentences are unlikely to be repeated."""
@@ -84,7 +91,7 @@ class OwnPhrases:
         self._activity = activity
         self._teacher = teacher
         self._unclear = ""  # the last words that were not understood
-        self._asked = False  # whether a later command has been asked about
+        self._asked = False  # whether a later command has been understood
 
     def phrasebook(self, people: Sequence[Person], learnt: Learnt | None) -> Phrasebook:
         """Build the phrasebook for the participants, with the teacher's own phrases."""
@@ -99,7 +106,7 @@ class OwnPhrases:
         if isinstance(came, NotUnderstood | Offered):
             self._unclear = "" if said.commands is None else _plain(came.heard)
             self._asked = False
-        elif isinstance(came, Asked):
+        elif isinstance(came, Asked | Refused):
             self._unclear = "" if self._asked else self._unclear
             self._asked = True
         return came

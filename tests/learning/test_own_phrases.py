@@ -12,7 +12,7 @@ from tangy_tui.language.commands import Command
 from tangy_tui.learning.own_phrases import forget_phrase, own_phrases
 from tangy_tui.learning.teaching_events import NewWording, Settle, TeachingEvent
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.learning.verification import NotUnderstood, Reply, Say
+from tangy_tui.learning.verification import NotUnderstood, Refused, Reply, Say
 
 WORDS = "let it all begin"
 
@@ -54,6 +54,13 @@ def test_only_the_next_command_can_explain_unknown_words(workspace: Workspace) -
     say(teaching, WORDS)
     teaching.apply(Say("call number"))
     teaching.apply(Reply(yes=False))  # the teacher wants something else now
+    assert asked(show(teaching, "greet everyone")) == []
+
+
+def test_a_refused_command_was_the_next_one(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    say(teaching, WORDS)
+    assert isinstance(teaching.apply(Say("go to user nine"))[0], Refused)
     assert asked(show(teaching, "greet everyone")) == []
 
 
