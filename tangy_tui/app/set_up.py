@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tangy_hw.device_protocols import DeviceError
+from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
@@ -151,15 +152,11 @@ class SetUp:
         """
         from tangy_tui.learning.policies import need_policy
 
-        workspace, before = self.workspace, self.workspace.profile
-        if self.world is not None or activity == before:
+        workspace = self.workspace
+        if self.world is not None or activity == workspace.profile:
             return
+        need_policy(workspace.store, load_activity(activity))
         workspace.change_activity(activity)
-        try:
-            need_policy(workspace.store, workspace.activity)
-        except TangyError:
-            workspace.change_activity(before)
-            raise
         self.patterns, self.strength = [], ""
         self._seat_as_before()
         self.away &= set(self.seats)

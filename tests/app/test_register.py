@@ -118,6 +118,19 @@ def test_a_change_prints_only_its_own_lines(data_folder: Path) -> None:
     workspace.close()
 
 
+def test_a_refused_activity_changes_nobody(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    setup = SetUp.of(workspace)
+    setup.add("Anna", guest=True)
+    setup.move("user1", 1)
+    before = text.lines_of(setup)
+    with pytest.raises(TangyError):
+        setup.play("trivia")  # nobody has taught it
+    assert text.lines_of(setup) == before
+    assert [person.id for person in workspace.people] == setup.seats
+    workspace.close()
+
+
 @pytest.mark.slow
 def test_people_and_the_activity_are_set_up_by_lines(taught: Path) -> None:
     workspace = Workspace(taught)
