@@ -156,7 +156,8 @@ class TeachingLines:
             if isinstance(line, str):
                 command = self._command(line)
             else:
-                command = spoken_settling(line, teaching.remark) or line
+                remark = teaching.remark if self._answers else None
+                command = spoken_settling(line, remark) or line
             if isinstance(command, Leave) or self.plays:
                 break
             asked = teaching.question
@@ -300,10 +301,8 @@ class TeachingLines:
         if self._tour is not None and self._tour.at is not None:
             phrase = next(iter(teaching.sayable), "")
             activity = teaching.activity
-            visits = goes_to_people(activity)
-            words = tour_line(
-                self._tour.at, teaching.teacher, activity.title, phrase, visits=visits
-            )
+            at, visits = self._tour.at, goes_to_people(activity)
+            words = tour_line(at, teaching.teacher, activity.title, phrase, visits=visits)
             self._write(words)
 
     def _named(self, name: str) -> str:

@@ -14,6 +14,7 @@ from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.language.commands import Command, Phrasebook
+from tangy_tui.learning.own_phrases import own_phrases
 from tangy_tui.learning.verification import (
     Asked,
     Offered,
@@ -28,6 +29,7 @@ from tangy_tui.learning.verification import (
 from tangy_tui.speech.input import Heard
 from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.refusals import WHICH
+from tangy_tui.text.remarks import OR_NO
 from tangy_tui.text.teaching_commands import STOPPED
 from tangy_tui.text.voice import OR_SAY_YES
 
@@ -263,6 +265,27 @@ class TestBySpeech:
         ]
         session.run()
         assert session.script == []
+
+    @pytest.mark.parametrize("answers", [True, False])
+    @pytest.mark.parametrize(
+        ("said", "refused"),
+        [(Reply(True), "There is no question"), (Say("number one", 0.2, ()), "I do not know")],
+    )
+    def test_a_remark_is_answered_by_voice_if_answers_are_switched_on(
+        self, workspace: Workspace, answers: bool, said: Heard, refused: str
+    ) -> None:
+        session = Session(workspace, ScriptedEars(live=True, answers=answers))
+        session.script = [
+            ("Now: Nobody has been", Say("let it all begin", 0.2, ())),
+            ("let it all begin", "greet everyone"),
+            ("Did you say", "y"),
+            (OR_NO, said),
+            ("From now on" if answers else refused, "quit"),
+        ]
+        session.run()
+        assert session.script == []
+        kept = own_phrases(workspace.store, workspace.activity.name, "Ada")
+        assert kept == ({"let it all begin": "greeting"} if answers else {})
 
     def test_a_command_spoken_during_a_question_waits_for_the_answer(
         self, workspace: Workspace
