@@ -115,6 +115,15 @@ def test_the_scene_words_what_people_do_as_the_file_does(world: DeclaredLiveWorl
     assert world.scene().doing["user2"] == "asks for help"
 
 
+def test_nobody_is_shown_as_asking_after_the_game(world: DeclaredLiveWorld) -> None:
+    asked(world)
+    world.tell("user2", "help")
+    world.observe()
+    assert world.scene().requests == ("user2",)
+    world.over = True
+    assert world.scene().requests == ()
+
+
 def test_an_unknown_answer_is_refused(world: DeclaredLiveWorld) -> None:
     asked(world)
     assert not world.tell("user1", "something else")

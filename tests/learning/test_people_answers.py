@@ -75,6 +75,12 @@ def test_the_stop_decoder_knows_the_answers_as_other_talk() -> None:
     assert "honey" in wanted(book, USUAL).no_stops
 
 
+def test_every_answer_to_a_remark_can_be_said_by_its_number() -> None:
+    book = Phrasebook(declared("trivia"), load_people(4))
+    assert "number four" in wanted(book, USUAL).answers
+    assert "number five" not in wanted(book, USUAL).answers
+
+
 def test_a_spoken_number_is_given_in_digits() -> None:
     assert taken("seven", "seven") == Say("7", BOTH_HEARD, None)
 

@@ -101,6 +101,8 @@ def test_the_circle_follows_the_seats_and_not_the_lot(raffle: DeclaredActivity) 
     again = game_from(raffle.declaration, PLAYERS, memory_of(game))
     assert again is not None
     assert (again.players, again.circle) == (game.players, PLAYERS)
+    strange = replace(memory_of(game), circle=("user1", "user1", "user2"))
+    assert game_from(raffle.declaration, PLAYERS, strange) is None
     game.here = ("user3", "user1")
     game.addressed = "user1"
     assert game.whom("next in circle") == "user3"

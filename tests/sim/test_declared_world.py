@@ -10,6 +10,7 @@ import pytest
 from tangy_profiles.declared.activity import read_declared
 from tangy_profiles.declared.checking import expected_moves
 from tangy_profiles.declared.judging import CERTAIN
+from tangy_profiles.declared.vocabulary import ASKING, YES
 from tangy_profiles.state import Outcome
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.support.declared import DECLARED, declared
@@ -84,6 +85,16 @@ def test_unclear_answers_are_asked_again_and_games_end() -> None:
     for outcome in found:
         asked = Counter(one.person for one in outcome.unclear if one.asked_again)
         assert all(times <= most for times in asked.values())
+
+
+def test_nobody_is_shown_as_asking_after_the_game() -> None:
+    world = DeclaredWorld(declared("trivia"), PEOPLE, seed=4)
+    world.game.observe(ASKING, PEOPLE[1], YES)
+    assert world.scene().requests == (PEOPLE[1],)
+    assert world.scene().doing[PEOPLE[1]] == "asks for help"
+    world.over = True
+    assert world.scene().requests == ()
+    assert world.scene().doing[PEOPLE[1]] == "watches"
 
 
 def test_an_unclear_answer_is_never_judged() -> None:
