@@ -195,12 +195,12 @@ class TeachingLines:
         if self._ears is None or (asks and not (self._together or self._answers)):
             return await self._line()
         spoken = self._spoken = self._spoken or asyncio.ensure_future(anext(self._ears, None))
-        if asks and _is_command(spoken):
+        if asks and _is_heard(spoken, Say):
             return await self._line()
         typed = self._typed = self._typed or (self._reading() if self._together else None)
         waiting: list[asyncio.Future[Any]] = [spoken] if typed is None else [spoken, typed]
         done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-        if typed in done or (asks and _is_command(spoken)):
+        if typed in done or (asks and _is_heard(spoken, Say)):
             return await self._line()
         self._spoken = None
         try:
@@ -348,10 +348,12 @@ class TeachingLines:
             self._write(line)
 
     def _drop_answer(self) -> None:
-        """Drop a line that was typed before the question that it would answer."""
-        typed = self._typed
+        """Drop what was typed or said before the question that it would answer."""
+        typed, spoken = self._typed, self._spoken
         if typed is not None and typed.done() and read_answer(typed.result() or "") is not None:
             self._typed = None
+        if spoken is not None and _is_heard(spoken, Reply):
+            self._spoken = None
 
     def _where(self, *, fully: bool = False) -> None:
         teaching = self._teaching
@@ -391,8 +393,8 @@ class TeachingLines:
             self._tell_of_tour()
 
 
-def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
-    """Return whether recognised speech is available, and is a new command."""
+def _is_heard(spoken: asyncio.Future[Heard | None], kind: type[Say | Reply]) -> bool:
+    """Return whether recognised speech is available, and of a kind: a new command, or an answer."""
     if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
         return False
-    return isinstance(spoken.result(), Say)
+    return isinstance(spoken.result(), kind)

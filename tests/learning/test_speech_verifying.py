@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 
 import pytest
@@ -173,6 +174,22 @@ class ScriptedEars:
         self._coming.put_nowait(None)
 
 
+class BusyEars(ScriptedEars):
+    """Ears whose first words arrive together with a typed line, as after a moment of hard work."""
+
+    def __init__(self, *, live: bool, answers: bool) -> None:
+        super().__init__(live=live, answers=answers)
+        self._others = set(threading.enumerate())
+        self._busy = True
+
+    async def __anext__(self) -> Heard:
+        heard = await super().__anext__()
+        for reading in set(threading.enumerate()) - self._others if self._busy else ():
+            reading.join()
+        self._busy = False
+        return heard
+
+
 class Session:
     """A session by lines with a script of typed and spoken input."""
 
@@ -286,6 +303,17 @@ class TestBySpeech:
         assert session.script == []
         kept = own_phrases(workspace.store, workspace.activity.name, "Ada")
         assert kept == ({"let it all begin": "greeting"} if answers else {})
+
+    def test_a_yes_before_a_question_does_not_answer_it(self, workspace: Workspace) -> None:
+        session = Session(workspace, BusyEars(live=True, answers=True))
+        session.ears.hear(Reply(True))
+        session.script = [
+            ("Now: Nobody has been", "greet everyone"),
+            (OR_SAY_YES, Reply(False)),
+            ("Not done", "quit"),
+        ]
+        session.run()
+        assert session.script == []
 
     def test_a_command_spoken_during_a_question_waits_for_the_answer(
         self, workspace: Workspace
