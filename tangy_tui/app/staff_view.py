@@ -16,6 +16,7 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.gathering import as_gathering
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.monitoring.attention import goes_to_people
 
 if TYPE_CHECKING:
     from tangy_profiles.past_game import PastGame
@@ -151,7 +152,12 @@ def _with_facts(person: PersonNow, world: object) -> PersonNow:
         if fact.kind == "count" and fact.per_player
     )
     turn = "next turn" in does and game.players[game.turn] == person.id
-    return replace(person, counts=counts, their_turn=turn, goes_round="go to whom" in does)
+    return replace(
+        person,
+        counts=counts,
+        their_turn=turn,
+        goes_round=goes_to_people(getattr(world, "activity", None)),
+    )
 
 
 def next_step(world: object, policy: Policy) -> tuple[Decision, ActivityState] | None:

@@ -5,14 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import Enum
 
-from tangy_profiles.activity import Activity
 from tangy_tui.learning.teaching_events import Executed, TeachingEvent
 from tangy_tui.learning.verification import Asked, Offered
-
-
-def goes_to_people(activity: Activity) -> bool:
-    """Return whether the robot drives to people in an activity."""
-    return any(one.effect == "go to user" for one in activity.behaviours.values())
 
 
 class TourStop(Enum):

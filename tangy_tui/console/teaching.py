@@ -23,7 +23,7 @@ from tangy_tui.app.command_grammar import (
     read_teaching,
 )
 from tangy_tui.app.spoken_answers import choices_of, spoken_settling
-from tangy_tui.app.tour import Tour, goes_to_people
+from tangy_tui.app.tour import Tour
 from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.step_rules import rules_to_type
 from tangy_tui.console.typed_yes import TypedYes
@@ -45,6 +45,7 @@ from tangy_tui.learning.verification import (
     Say,
     StopCommand,
 )
+from tangy_tui.monitoring.attention import goes_to_people
 from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.text.coach import SAYABLE, coach_words, sayable_now
 from tangy_tui.text.hearing import hearing_words

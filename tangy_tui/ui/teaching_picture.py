@@ -9,7 +9,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.state import ActivityState, Situation
-from tangy_tui.app.tour import Tour, TourStop, goes_to_people
+from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, coverage, missing_words
 from tangy_tui.learning.library import read_library
@@ -32,6 +32,7 @@ from tangy_tui.learning.teaching_events import (
     WrongPerson,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.monitoring.attention import goes_to_people
 from tangy_tui.text import teaching as text
 from tangy_tui.text.activities import with_activity
 from tangy_tui.text.coach import arranged_words, coach_words, unseen_words

@@ -16,7 +16,8 @@ class Game:
     """A world with a game, as far as staff see it."""
 
     def __init__(self) -> None:
-        self.game = DeclaredGame(declared("trivia").declaration, PEOPLE)
+        self.activity = declared("trivia")
+        self.game = DeclaredGame(self.activity.declaration, PEOPLE)
 
 
 def lines(world: object) -> list[str]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 
-from tangy_tui.app.tour import Tour, TourStop, goes_to_people
+from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.monitoring.attention import goes_to_people
 from tangy_tui.text.tour import tour_line, tour_words
 from tests.support.declared import declared
 
