@@ -28,6 +28,7 @@ from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, TangyPilot, screen_text
 from tests.pilot.ears import FakeEars
+from tests.support.waiting import until_shown
 
 UNSURE = "call a joke number"
 
@@ -575,5 +576,7 @@ async def test_the_microphone_line_matches_its_snapshot(
         await pilot.pause()
         if shows == "no answer":
             ears.tell(HearingNote("no answer"))
-            await pilot.pause()
+            await until_shown(
+                pilot, lambda: screen_text(pilot.app).count("no yes, no or stop") == 2
+            )
         looks(pilot.app)

@@ -123,7 +123,7 @@ def test_the_recipe_for_a_kind_of_event_works(copy: Path) -> None:
         "Add a kind of event", "people_records.py", "tests/support/every_kind.py", "test_events.py"
     )
     shutil.copytree(HOUSE / "tests", copy / "tests")
-    told = "a_kind_is_written_by_the_program_and_read_by_it"
+    told = "every_kind_of_event_is_written_and_read_by_the_program"
     tests = ["-m", "pytest", "-q", "-n", "0", "tests/profiles/test_events.py", "-k", told]
     edit(
         copy / records,
