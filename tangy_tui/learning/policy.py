@@ -168,7 +168,11 @@ def learn_policy(
     strange = set(rows) - set(product(situations, activity.behaviours))
     if strange:
         gone = sorted({behaviour for _, behaviour in strange} - set(activity.behaviours))
-        lacks = f"the behaviour {gone[0]!r}" if gone else repr(activity.in_words(min(strange)[0]))
+        lacks = (
+            f"the behaviour {gone[0]!r}"
+            if gone
+            else f"the situation {' / '.join(min(strange)[0])!r}"
+        )
         raise NotOfThisActivity(
             f"{activity.title} has changed since it was demonstrated, and no longer has {lacks}. "
             "Give it its old name in the file again (the 'question' and 'phrases' of a behaviour, "

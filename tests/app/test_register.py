@@ -12,7 +12,7 @@ from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.room import load_room, room_for
 from tangy_tui.app.joining import let_join
 from tangy_tui.app.register import add_person, archive_person, guest_ids, participants, registered
-from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.set_up import Check, SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text
@@ -188,3 +188,10 @@ def test_a_person_with_a_used_name_is_refused(data_folder: Path) -> None:
         let_join(workspace, "anna")
     assert ids(workspace) == before
     workspace.close()
+
+
+def test_the_question_whether_to_begin_names_what_is_not_ready() -> None:
+    failed = [Check("tablet", "not ready", "http://here/"), Check("sound", "not ready")]
+    told = text.lines_anyway(failed)
+    assert text.NAMES["tablet"].lower() in told and text.NAMES["sound"].lower() in told
+    assert text.NAMES["battery"].lower() not in told

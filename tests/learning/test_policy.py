@@ -258,7 +258,7 @@ def test_demonstrations_of_an_older_activity_are_refused(
     with pytest.raises(NotOfThisActivity, match=r"no longer has the behaviour 'sing'.*old name"):
         learn_policy(activity, [showing(*rows, (rows[0][0], "sing"))])
     strange = rows[0][0]._replace(stage="supper")
-    with pytest.raises(NotOfThisActivity, match=r"no longer has '.*supper.*old name"):
+    with pytest.raises(NotOfThisActivity, match=r"no longer has the situation 'supper.*old name"):
         learn_policy(activity, [showing(*rows, (strange, rows[0][1]))])
 
 
