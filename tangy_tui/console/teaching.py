@@ -300,11 +300,9 @@ class TeachingLines:
     def _tell_of_tour(self) -> None:
         teaching = self._teaching
         if self._tour is not None and self._tour.at is not None:
-            phrase = next(iter(teaching.sayable), "")
-            activity = teaching.activity
+            phrase, activity = next(iter(teaching.sayable), ""), teaching.activity
             at, visits = self._tour.at, goes_to_people(activity)
-            words = tour_line(at, teaching.teacher, activity.title, phrase, visits=visits)
-            self._write(words)
+            self._write(tour_line(at, teaching.teacher, activity.title, phrase, visits=visits))
 
     def _named(self, name: str) -> str:
         """Change the teacher's name, or return it if no name is given."""
