@@ -83,7 +83,7 @@ class Participants:
         return next((p.name for p in self.people if p.id == person), person)
 
     def find_person(self, wanted: str) -> Person:
-        """Return the person with an id or a name.
+        """Return the person with an id, a name, or a first name that one person has.
 
         Raises:
             TangyError: nobody, or more than one, is called that.
@@ -91,6 +91,9 @@ class Participants:
         by_id = [p for p in self.people if p.id == wanted]
         found = by_id or [p for p in self.people if folded(p.name) == folded(wanted)]
         found = found or [p for p in self.people if unaccented(p.name) == unaccented(wanted)]
+        found = found or [
+            p for p in self.people if unaccented(p.name).split()[:1] == [unaccented(wanted)]
+        ]
         if len(found) == 1:
             return found[0]
         if found:

@@ -173,8 +173,7 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
     limits = dict.fromkeys(game.asks for game in games if game.asks != (0, 0))
     for visit, most in limits:
         yield (
-            f"Nobody was to be asked without success more than {counted(visit, 'time')} in a "
-            "visit, "
+            f"Tangy asks a person in vain at most {counted(visit, 'time')} in a visit, "
             f"and {counted(most, 'time')} in a game."
         )
     pauses, seconds = sum(g.pauses[0] for g in games), sum(g.pauses[1] for g in games)
@@ -193,7 +192,7 @@ def _games_lines(games: Sequence[Game], activity: Activity | None) -> Iterator[s
         if told:
             yield "Those with faults, or that did not go to their end:"
     for game in told:
-        words = f"{counted(game.steps, 'step')}; {game.ending}"
+        words = f"{counted(game.steps, 'step')}. {game.ending[:1].upper()}{game.ending[1:]}"
         yield f"{game_words(game, activity)}: {words}" + ("" if words.endswith(".") else ".")
     if len(told) < len(games):
         rest = counted(len(games) - len(told), "game")

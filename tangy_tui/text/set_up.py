@@ -12,7 +12,7 @@ from tangy_tui.text.rooms import room_words
 
 TITLE = "Set up"
 PEOPLE, GAME, READY = "Who is here, and where they sit", "The game", "Is everything ready?"
-HERE, NOT_YET = "here", "not here yet"
+HERE, NOT_HERE = "here", "not here"
 SOUND = "Hello. Can everybody hear me?"
 CARD_HOW = "Hold a card in front of Tangy, then press Enter."
 NO_CARD = "Tangy saw no card. Hold one closer, flat, and in good light."
@@ -40,6 +40,8 @@ SAID = "Tangy has spoken. Press Enter if you heard it."
 STOPPED = "Tangy was stopped. Begin the game when all is well."
 UNHEARD = "Sound: nobody has said yet that they heard Tangy."
 BEGIN_ANYWAY = "Begin although not everything is ready?"
+LEAVE = "Leave without a game?"
+LEAVE_DETAIL = "Who is away, the seats and the choices for the game are not kept. New people are."
 BEGIN_DETAIL = "Tangy starts moving and speaking."
 
 NAMES: dict[CheckName, str] = {
@@ -232,7 +234,7 @@ def lines_of(setup: SetUp) -> list[str]:
     """Describe the set-up line by line."""
     name = staff_names(setup.workspace.name)
     people = (
-        f"  {seat}. {name(person)}: {NOT_YET if person in setup.away else HERE}"
+        f"  {seat}. {name(person)}: {NOT_HERE if person in setup.away else HERE}"
         for seat, person in enumerate(setup.seats, 1)
     )
     return [

@@ -195,3 +195,12 @@ def test_the_question_whether_to_begin_names_what_is_not_ready() -> None:
     told = text.lines_anyway(failed)
     assert text.NAMES["tablet"].lower() in told and text.NAMES["sound"].lower() in told
     assert text.NAMES["battery"].lower() not in told
+
+
+def test_a_first_name_finds_the_only_person_who_has_it(data_folder: Path) -> None:
+    workspace = Workspace(data_folder)
+    workspace.rename(workspace.find_person("user1"), "Zoé Miller")
+    assert workspace.find_person("zoe").id == "user1"
+    with pytest.raises(TangyError, match="More than one person is called 'user'"):
+        workspace.find_person("user")
+    workspace.close()

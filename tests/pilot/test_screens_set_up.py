@@ -117,6 +117,21 @@ async def test_begin_opens_the_robot_and_starts_the_game(run: Run, setting: Sett
         assert setting.setup.world is not None
 
 
+@pytest.mark.slow
+async def test_leaving_asks_only_if_choices_would_be_lost(run: Run, setting: Setting) -> None:
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        setting.setup.away.add(setting.setup.seats[0])
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await pilot.press("n")
+        await opened(pilot)
+        assert setting.begins == []
+        setting.setup.away.clear()
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: setting.begins == [False])
+
+
 async def test_unready_parts_are_reported_before_the_game(run: Run, setting: Setting) -> None:
     setting.link.ail("voice", STALE)
     setting.setup.world = live_world(setting.workspace, setting.link)
@@ -319,7 +334,7 @@ class Panel(TangyScreen[None]):
 
 
 async def test_a_long_question_is_shown_in_full(run: Run) -> None:
-    asked = "Reds, question 1: How many minutes has an hour? thirty, sixty or ninety?"
+    asked = "Reds, question 1: How many minutes are there in an hour? thirty, sixty or ninety?"
     async with run(Panel()) as pilot:
         panel = pilot.app.screen.query_one(StaffPanel)
         panel.show("", said_words(asked), ["1:01 so far"], [("Reds", "no visit yet", "text")])

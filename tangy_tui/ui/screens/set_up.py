@@ -88,6 +88,7 @@ class SetUpScreen(TangyScreen[bool]):
         self._switch_on = switch_on
         self._choose = choose
         self._busy = self._stopped = False
+        self._at_first = text.lines_of(setup)
         self._drawn: object = None
 
     def compose(self) -> ComposeResult:
@@ -363,8 +364,14 @@ class SetUpScreen(TangyScreen[bool]):
         return not self._stopped and bool(self.setup.not_ready) and monotonic() < until
 
     def action_leave(self) -> None:
-        """Close the screen; the robot is switched off again."""
+        """Close the screen, after a question if choices would be lost; Tangy goes off again."""
         if not self._busy:
+            self.run_worker(self._leave(), name="leave", group="leave", exclusive=True)
+
+    async def _leave(self) -> None:
+        changed = text.lines_of(self.setup) != self._at_first
+        dialog = ConfirmDialog(text.LEAVE, text.LEAVE_DETAIL, yes="leave", no="stay")
+        if not changed or await self.app.push_screen_wait(dialog):
             self.close(False)
 
 

@@ -27,7 +27,7 @@ def people_lines(setup: SetUp) -> list[SetUpLine]:
         for place, person in enumerate(sitting):
             seat += 1
             away = person in setup.away
-            value = (AWAY if several else text.NOT_YET) if away else text.HERE
+            value = (AWAY if several else text.NOT_HERE) if away else text.HERE
             label = f"{seat:>2} {name(person)}" if several else f"{seat:>2}  {name(person)}"
             at, ink = (table, place) if several else None, "dim" if away else "good"
             lines.append(SetUpLine("person", person, label, value, ink, at))
