@@ -82,7 +82,7 @@ class FreezeGuard:
         seconds = self._watch.tick()
         if not seconds or self._control.supervision.over:
             return False
-        self._control.apply(Pause())
+        self._control.apply(Pause(unasked=True))
         with suppress(TangyError):  # a full log must not prevent the report
             self._control.supervision.note("program frozen", "", detail=f"{seconds:.0f}")
         self._told(seconds)

@@ -36,7 +36,9 @@ TAKEN_OVER = "took over"
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """Pause after the current behaviour."""
+    """Pause after the current behaviour; `unasked`: the program itself pauses, not staff."""
+
+    unasked: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -104,6 +104,9 @@ class GameController(EndingGames):
         """Whether the next behaviour may run; False: the game is paused."""
         self.single = False
         """Whether the game pauses after the next behaviour."""
+        self.paused_itself = False
+        """Whether the program paused the game, and not staff."""
+        self._holds = 0  # open questions that hold the game
         self._turn = threading.RLock()
         """Guards the supervision and the robot."""
         self._watch = StaffWatch()
@@ -142,7 +145,7 @@ class GameController(EndingGames):
         with self._turn, serving():
             if self.stopped:
                 return []
-            self.taking_over = self.single = False
+            self.taking_over = self.single = self.paused_itself = False
             self.going = self.past is None
             self.autonomy.reset()
             self.robot.release(everybody=True)
@@ -165,7 +168,7 @@ class GameController(EndingGames):
             self.nudge.clear()
             if game.over:
                 return []
-            waits = self.stopped or not self.going or game.halted is not None
+            waits = self.stopped or self._holds or not self.going or game.halted is not None
             if waits or game.question is not None or self.proposal is not None:
                 return game.look()
             if self.taking_over and not game.waiting:
@@ -249,8 +252,8 @@ class GameController(EndingGames):
         match command:
             case StopRobot(by):
                 return self._stop(by)
-            case Pause():
-                self.going = False
+            case Pause(unasked):
+                self.going, self.paused_itself = False, unasked
                 return [StaffNote("paused")]
             case GoOn():
                 return self._go_on()
@@ -285,6 +288,18 @@ class GameController(EndingGames):
             self.supervision.note(did, by or self.by, **what)
 
     @contextmanager
+    def holding(self) -> Iterator[None]:
+        """Hold the game and its count-down, while staff are asked whether they mean a command."""
+        self._holds += 1
+        self.robot.hold_calls(held=True)
+        try:
+            yield
+        finally:
+            self._holds -= 1
+            self.robot.hold_calls(held=bool(self._holds))
+            self._tell_all()
+
+    @contextmanager
     def driving(self) -> Iterator[None]:
         """Let staff drive by keys while the game waits."""
         going, self.going, self.robot.driving = self.going, False, True
@@ -312,7 +327,7 @@ class GameController(EndingGames):
             self.note("let go on")
         if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
-        self.going = True
+        self.going, self.paused_itself = True, False
         return [StaffNote("goes on")]
 
     def _one_step(self) -> list[Result]:

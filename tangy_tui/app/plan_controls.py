@@ -81,15 +81,19 @@ class GamePlanControls:
         self._note("pace", detail=f"{pace:g}")
         return StaffNote("pace", f"{pace:g}")
 
+    def called(self, label: str) -> str:
+        """Return the label of the call that a label names ("": the last call), "" if none."""
+        world = self.world
+        number = None if world is None or self._idle else _number_called(world, label)
+        return "" if world is None or number is None else world.activity.deck.label(number)
+
     def _take_back(self, world: PlannedGame, label: str) -> list[Result]:
         """Take back the last call, or the one with a label, and tell the group."""
-        deck, called = world.activity.deck, world.called_now
-        if not called:
-            return [StaffNote("nothing called")]
-        number = next((n for n in called if deck.label(n).casefold() == label.casefold()), None)
-        if label and number is None:
-            return [StaffNote("not called", label)]
-        number = called[-1] if number is None else number
+        deck, number = world.activity.deck, _number_called(world, label)
+        if number is None:
+            return [
+                StaffNote("not called", label) if world.called_now else StaffNote("nothing called")
+            ]
         changed = self._supervision.game.change("taken back", number=number, by=self._by)
         self._note("took back", detail=deck.label(number), taken_back=number)
         return [StaffNote("call taken back", deck.label(number)), changed]
@@ -166,3 +170,10 @@ class GamePlanControls:
             self._supervision.game.change("came" if here else "left", person=person, by=self._by)
         self._note("came" if here else "left", person=person)
         return StaffNote("comes" if here else "goes", person)
+
+
+def _number_called(world: PlannedGame, label: str) -> int | None:
+    """Return the called number with a label ("": the last one); None if there is none."""
+    deck, called = world.activity.deck, world.called_now
+    wanted = label.casefold()
+    return next((n for n in reversed(called) if wanted in ("", deck.label(n).casefold())), None)

@@ -52,6 +52,16 @@ class RobotControls:
         self.driving = False
         """Whether staff are driving it by hand."""
 
+    @property
+    def there(self) -> bool:
+        """Whether there is a robot, or its bench."""
+        return self._robot is not None
+
+    def hold_calls(self, *, held: bool) -> None:
+        """Hold the count-down to the next call, or let it go on."""
+        if self._robot is not None:
+            self._robot.hold_calls(held=held)
+
     def stop(self, why: str = STOPPED) -> None:
         """Stop at once, ahead of all queued commands; latched until staff release it."""
         if self._robot is not None:

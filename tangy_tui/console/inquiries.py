@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import patterns_line
-from tangy_tui.text.control import going_words
-from tangy_tui.text.faults import advice_lines, list_lines
+from tangy_tui.text.control import going_words, proposal_words
+from tangy_tui.text.faults import HALTED, advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.situations import Name, state_words
-from tangy_tui.text.staff_lines import ANSWER_IN_WORDS, NOTHING_WRONG, SAY_IN_WORDS, nothing_to
+from tangy_tui.text.staff_lines import (
+    ACCEPTABLE,
+    ANSWER_IN_WORDS,
+    NOTHING_WRONG,
+    SAY_IN_WORDS,
+    nothing_to,
+)
 
 HELP = "You can type at any time:"
 
@@ -46,6 +53,16 @@ class Inquiries:
         if word in ("undo", "redo"):
             return [nothing_to(word)]
         return None
+
+    @property
+    def waits_for(self) -> str:
+        """What Tangy waits for, in a sentence; "" if it does not wait."""
+        proposal = self._controller.proposal
+        if proposal is not None:
+            return proposal_words(proposal, self._name)
+        if self._controller.phase == "halted" and (asked := waits_line(self._game, HALTED)):
+            return asked
+        return ACCEPTABLE if self._game.acceptable else ""
 
     def _help(self) -> list[str]:
         if (verifying := self._controller.answers.verifying) is not None:

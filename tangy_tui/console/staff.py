@@ -13,6 +13,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
+from typing import TypeAlias
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
@@ -31,8 +32,10 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
-from tangy_tui.console.inputs import WAIT, any_waits
+from tangy_tui.console.confirming import ConfirmingStaff
+from tangy_tui.console.inputs import any_waits
 from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.console.script_waits import ScriptWaits
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
 from tangy_tui.language.stop_sentence import prepare
@@ -45,17 +48,16 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
-from tangy_tui.text.calls import expert_line, waits_line
-from tangy_tui.text.control import noted_words, proposal_words
-from tangy_tui.text.faults import HALTED
+from tangy_tui.text.calls import expert_line
+from tangy_tui.text.control import noted_words
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.questions import ANSWER_HELP
 from tangy_tui.text.situations import Name, verification_lines
 from tangy_tui.text.telling import waiting_words
 
+Task: TypeAlias = Callable[[], Sequence[ControllerOutput]]
 LOOK_SECONDS = 0.1  # between two checks of the devices, and for the next line
 WORKS_SECONDS = 5.0  # for pending commands when the last game ended
-LONGESTWAIT = 600.0  # s that a script may wait
 
 
 class StaffLines:
@@ -92,16 +94,17 @@ class StaffLines:
         self._name = name
         self._read, self._speed, self._also = read, speed, also
         self._yes = yes or TypedYes()
+        self._sure = ConfirmingStaff(controller, self._yes, self._write)
+        self._waits = ScriptWaits(controller, self._tell_where_it_goes)
         self._inquiries = Inquiries(controller, name, demonstrations)
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._writing = threading.Lock()
         self._write_line = write
         self._prompted, self._going = "", ("", "", ("", tuple[str, ...]()))
-        self._calls = 0
         self._alone = self._stopped = self._ended = self._by_turns = False
         self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
-        self._tasks: queue.Queue[Callable[[], Sequence[ControllerOutput]] | None] = queue.Queue()
+        self._tasks: queue.Queue[Task | None] = queue.Queue()
         self._command = command_reader(self._game.world.activity, find_person)
 
     def run(self, games: int) -> bool:
@@ -195,12 +198,7 @@ class StaffLines:
 
     def _prompt(self) -> None:
         """Write what Tangy waits for, once."""
-        proposal = self._controller.proposal
-        asked = "" if proposal is None else proposal_words(proposal, self._name)
-        if not asked and self._controller.phase == "halted":
-            asked = waits_line(self._game, HALTED)
-        if not asked and self._game.acceptable:
-            asked = staff_lines.ACCEPTABLE
+        asked = self._inquiries.waits_for
         if asked != self._prompted:
             self._prompted = asked
             if asked:
@@ -213,7 +211,7 @@ class StaffLines:
             if isinstance(one, StaffNote):
                 self._write(noted_words(one, self._name))
             elif isinstance(one, Verification):
-                yes = self._yes.ask_of(one, None if self._by_turns else self._lines)
+                yes = self._yes.ask_of(one, self._typed)
                 self._write_all(verification_lines(one, yes))
                 if isinstance(one, NotUnderstood):
                     self._write(staff_lines.ANSWER_IN_WORDS)
@@ -260,6 +258,7 @@ class StaffLines:
             except queue.Empty:
                 continue
             if line is None:
+                self._sure.drop()
                 self._alone = not early
                 if early:  # handle them first
                     self._lines.put(None)
@@ -267,7 +266,11 @@ class StaffLines:
                 elif self._controller.phase in ("idle", "running"):
                     self._write(staff_lines.NO_MORE)
                 self._controller.nudge.set()
-            elif self._is_due(line, early) or (not any_waits(early) and self._needs_no_game(line)):
+            elif (
+                self._sure.open
+                or self._is_due(line, early)
+                or (not any_waits(early) and self._needs_no_game(line))
+            ):
                 self._take_or_wait(line.strip(), playing)
             else:
                 early.append(line.strip())
@@ -308,9 +311,7 @@ class StaffLines:
         return after or isinstance(command, StopRobot)
 
     def _take_or_wait(self, text: str, playing: threading.Thread) -> None:
-        if wait := WAIT.fullmatch(text.casefold()):
-            self._wait(float(wait[1] or LONGESTWAIT), wait[2], playing)
-        else:
+        if not self._waits.wait(text, playing.is_alive):
             self._take(text)
 
     def _work_off(self) -> None:
@@ -318,6 +319,18 @@ class StaffLines:
         while (task := self._tasks.get()) is not None:
             self._tell(task())
             self._tasks.task_done()
+
+    def _do_next(self, task: Task) -> None:
+        """Do a task after those in the queue; at once if lines are read by turns."""
+        if self._by_turns:
+            self._tell(task())
+        else:
+            self._tasks.put(task)
+
+    @property
+    def _typed(self) -> queue.SimpleQueue[str | None] | None:
+        """The lines read ahead; None if each line is read when it is due."""
+        return None if self._by_turns else self._lines
 
     def _carry_out(self, command: GameCommand) -> None:
         """Carry out a command now, or queue it for its turn while lines are read."""
@@ -341,10 +354,18 @@ class StaffLines:
         except TangyError as error:
             self._write(str(error))
             return
-        if isinstance(command, StopRobot) and controller.answers.verifying:
-            controller.answers.reply(Reply(yes=False))
+        if isinstance(command, StopRobot):
+            self._sure.drop()
+            if controller.answers.verifying:
+                controller.answers.reply(Reply(yes=False))
         answer = text.casefold()
-        if command is not None:
+        if self._sure.open:
+            if (confirmed := self._sure.answer(text)) is not None:
+                self._carry_out(confirmed)
+                self._do_next(self._sure.end_of_hold())
+        elif command is not None and self._sure.ask(command, self._typed):
+            pass  # its answer comes in a later line
+        elif command is not None:
             self._carry_out(command)
         elif controller.answers.verifying and (reply := self._yes.answer(text)) is not None:
             if isinstance(reply, str):
@@ -374,27 +395,4 @@ class StaffLines:
             except TangyError as error:
                 return [StaffNote("cannot", str(error))]
 
-        if self._by_turns:
-            self._tell(answer())
-        else:
-            self._tasks.put(answer)
-
-    def _wait(self, seconds: float, what: str | None, playing: threading.Thread) -> None:
-        """Wait for some s, or until an event, before the next line."""
-        until = time.monotonic() + min(seconds, LONGESTWAIT)
-        calls = self._count_calls()
-        while time.monotonic() < until and playing.is_alive():
-            self._tell_where_it_goes()
-            phase = self._controller.phase
-            came = {
-                "asked": phase == "asking",
-                "halted": phase == "halted",
-                "paused": phase == "paused",
-                "called": self._count_calls() > calls,
-            }
-            if what is not None and came.get(what):
-                return
-            time.sleep(LOOK_SECONDS / 2)
-
-    def _count_calls(self) -> int:
-        return len(self._game.world.scene().called)
+        self._do_next(answer)

@@ -14,7 +14,6 @@ from typing import Any
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.command_grammar import (
     AgainFrom,
-    Inquiry,
     Leave,
     Perform,
     TeachAs,
@@ -25,7 +24,9 @@ from tangy_tui.app.command_grammar import (
 from tangy_tui.app.spoken_answers import choices_of, spoken_settling
 from tangy_tui.app.tour import Tour
 from tangy_tui.console.after_teaching import AfterTeaching
+from tangy_tui.console.confirming import ConfirmingTeacher
 from tangy_tui.console.step_rules import rules_to_type
+from tangy_tui.console.teaching_inquiries import TeachingInquiries
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.teaching_events import (
     Again,
@@ -47,17 +48,14 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.monitoring.attention import goes_to_people
 from tangy_tui.speech.input import Heard, SpeechInput
-from tangy_tui.text.coach import SAYABLE, coach_words, sayable_now
+from tangy_tui.text.coach import SAYABLE, sayable_now
 from tangy_tui.text.hearing import hearing_words
-from tangy_tui.text.learnt import NOT_SHOWN
 from tangy_tui.text.questions import ANSWER_HELP, NO_QUESTION, answer_help
 from tangy_tui.text.refusals import WHICH
-from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (
     GAME_OVER,
     HELP,
-    MEANINGS,
     NOTHING_CHANGED,
     ON_THE_SCREEN,
     STOPPED,
@@ -117,10 +115,11 @@ class TeachingLines:
         self._write = write
         self._ears = ears
         self._seen = seen
-        self._why = why
+        self._inquiries = TeachingInquiries(teaching, seen, why)
         self._resume = resume
         self._learn = learn
         self._yes = yes or TypedYes()
+        self._sure = ConfirmingTeacher(teaching, self._yes, write)
         self._rename = rename
         self._after = after
         self.plays = False
@@ -150,7 +149,7 @@ class TeachingLines:
         teaching, write = self._teaching, self._write
         write(f"Teaching {teaching.activity.title}. {HELP}")
         self._tell(teaching.begin(resume=resume))
-        self._where()
+        self._write(self._inquiries.where())
         self._tell_of_tour()
         while (line := await self._next_line()) is not None:
             command: TeacherCommand | StopCommand | Leave | None
@@ -251,6 +250,10 @@ class TeachingLines:
         if not text or text.startswith("#"):
             return None
         word = read_teaching(text, self._teaching.phrasebook.game)
+        if isinstance(word, StopCommand | Leave):
+            self._sure.drop()
+        if self._sure.open:
+            return self._sure.answer(text)
         answer, question = read_answer(text), self._teaching.question
         remark = self._teaching.remark
         if question is None and remark is not None and (settle := read_settling(text, remark)):
@@ -270,7 +273,7 @@ class TeachingLines:
         if word is None:
             self._write(NO_QUESTION)
         elif isinstance(word, str):
-            self._inquire(word)
+            self._write_all(self._inquiries.lines(word))
         elif isinstance(word, TeachAs) or word == Perform("name"):
             self._write(self._named(word.name if isinstance(word, TeachAs) else ""))
         elif word == Perform("rule"):
@@ -279,10 +282,12 @@ class TeachingLines:
             self._perform(word)
         elif isinstance(word, AgainFrom):
             if word.step is not None:
-                return Again(self._teaching.demonstration.id, word.step - 1)
+                return self._sure.ask(Again(self._teaching.demonstration.id, word.step - 1))
             self._write(WHICH_STEP)
-        else:
+        elif isinstance(word, StopCommand | Leave):
             return word
+        else:
+            return self._sure.ask(word)
         return None
 
     def _tours(self, text: str) -> bool:
@@ -324,24 +329,6 @@ class TeachingLines:
         )
         self._write_all(lines)
 
-    def _inquire(self, what: Inquiry) -> None:
-        match what:
-            case "shown":
-                count, *missing = self._seen() or [""]
-                self._write(count)
-                if missing:
-                    self._write_all([NOT_SHOWN, *missing])
-            case "why":
-                self._write_all(self._why())
-            case "where":
-                self._where(fully=True)
-            case _:
-                self._write(HELP)
-                for behaviour in self._teaching.activity.behaviours.values():
-                    self._write(f"  {behaviour.question}: say {behaviour.phrases[0]!r}")
-                for word, meaning in MEANINGS:
-                    self._write(f"  {word}: {meaning}")
-
     def _write_all(self, lines: Iterable[str]) -> None:
         for line in lines:
             self._write(line)
@@ -353,17 +340,6 @@ class TeachingLines:
             self._typed = None
         if spoken is not None and _is_heard(spoken, Reply):
             self._spoken = None
-
-    def _where(self, *, fully: bool = False) -> None:
-        teaching = self._teaching
-        state = teaching.world.observe()
-        scene = teaching.world.scene()
-        activity, name = teaching.activity, teaching.name
-        words = coach_words(activity, state, scene, name)
-        if fully:
-            words = f"{activity.in_words(state.situation)}. "
-            words += state_words(activity, state, scene, name)
-        self._write(f"Now: {words}")
 
     def _tell(self, events: Sequence[TeachingEvent]) -> None:
         if self._ears is not None:
@@ -387,7 +363,7 @@ class TeachingLines:
                 self._write_all(self._seen()[:1])
                 self._write(GAME_OVER)
             if isinstance(event, Executed | StepUndone) and not over:
-                self._where()
+                self._write(self._inquiries.where())
         if self._tour is not None and self._tour.follow(events):
             self._tell_of_tour()
 

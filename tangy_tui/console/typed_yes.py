@@ -36,7 +36,8 @@ class TypedYes:
             session: returns where the terminal is.
             flush: drops typed input that was not read yet (default: of standard input).
         """
-        self._terminal = terminal
+        self.typed = terminal
+        """Whether a person types the lines."""
         self._digit = terminal and (setting == "digit" or (setting == "auto" and session().remote))
         self._flush = flush or _flush_input
         self._random = random.SystemRandom()
@@ -49,9 +50,9 @@ class TypedYes:
             typed: the lines read so far, of which answers are dropped. In this case unread input is
                 kept, since it may be a stop.
         """
-        if self._terminal and typed is None:
+        if self.typed and typed is None:
             self._flush()
-        elif self._terminal and typed is not None:
+        elif self.typed and typed is not None:
             _drop_answers(typed)
         if self._digit:
             self.key = self._random.choice([digit for digit in DIGITS if digit != self.key])

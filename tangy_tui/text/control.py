@@ -29,7 +29,6 @@ WAIT_EXPLANATIONS = {
 NOT_ACCEPTABLE = "Tangy is asking nothing that you could call all right."
 
 ACCEPT = "Is all well, and shall Tangy go on?"
-MOVE_AGAIN = ("Let the robot move again?", "It goes on with the game at once.")
 
 SPOKEN_SECONDS = 12.0
 """Calls closer together (in s) may wait for Tangy's voice: a call took 8 to 10 s on the bench."""
@@ -234,7 +233,6 @@ def stands_words(why: str) -> str:
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."
 BUSY = "Not now: Tangy is busy."
-VOID_DETAIL = "It will count as not called, and come again later."
 WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
@@ -243,11 +241,6 @@ def waits_words(card: int = 0) -> str:
     """Tell that a command waits until Tangy has finished; a claim names its card."""
     then = f"checks card {card}" if card else "does what you said"
     return f"One moment: Tangy finishes this, then {then}."
-
-
-def void_call_words(label: str) -> str:
-    """Ask before taking a call back."""
-    return f"Take {label} back?"
 
 
 def confirmed_words(proposal: Proposal, name: Callable[[str], str]) -> tuple[str, str]:

@@ -122,6 +122,19 @@ def test_calls_keep_a_steady_pace(link: FakeLink) -> None:
     assert link.time - began >= 18
 
 
+def test_a_held_count_down_goes_on_where_it_was(link: FakeLink) -> None:
+    world = opened(world_of(link, pace=20.0))
+    do(world, "call number")
+    before = world.calls_in
+    world.hold_calls(held=True)
+    link.time += 60.0
+    assert world.calls_in == before
+    world.hold_calls(held=False)
+    assert world.calls_in == pytest.approx(before)
+    link.time += 5.0
+    assert world.calls_in == pytest.approx(before - 5.0)
+
+
 def test_an_interrupted_call_does_not_count(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.breaks["perform"] = "emergency stop is pressed"

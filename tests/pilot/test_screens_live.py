@@ -455,6 +455,41 @@ async def test_a_call_is_repeated_and_taken_back(
 
 
 @pytest.mark.slow
+async def test_the_game_waits_while_staff_are_asked_about_a_call(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 3)
+        await pilot.press("p")
+        await until_shown(pilot, lambda: live(pilot).control.phase == "running")
+        await pilot.press("f2")
+        await until_shown(pilot, lambda: "back?" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: not live(pilot).working)
+        count = len(world.called)
+        for _ in range(20):
+            assert live(pilot).control.next() == []
+        assert len(world.called) == count
+        await pilot.press("n")
+        await until_shown(pilot, lambda: len(world.called) > count)
+
+
+@pytest.mark.slow
+async def test_a_typed_end_asks_first(run: Run, program: Program, link: HeldLink) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 3)
+        for key in ("n", "y"):
+            assert not live(pilot).control.supervision.over
+            await pilot.press("colon")
+            await pilot.pause()
+            await pilot.press(*"end", "enter")
+            await until_shown(pilot, lambda: "End the game?" in screen_text(pilot.app))
+            await pilot.pause()
+            await pilot.press(key)
+            await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
+        await until_shown(pilot, lambda: live(pilot).control.supervision.over)
+
+
+@pytest.mark.slow
 async def test_the_screen_shows_its_heartbeat_under_dialogs(
     run: Run, program: Program, link: HeldLink
 ) -> None:

@@ -75,6 +75,7 @@ class LivePlan(PlannedGame):
     calls: CallOrder
     requests: HelpRequestTracker
     _due: float
+    _held_since: float | None = None
     _room: Room
 
     def say(
@@ -147,6 +148,20 @@ class LivePlan(PlannedGame):
         deck = self.activity.deck
         chosen = {"patterns": list(deck.patterns), "together": deck.together}
         self.cards.wins = None if deck == self.own_deck else chosen
+
+    @property
+    def calls_in(self) -> float:
+        """Time in s until the next number may be called."""
+        since = self._held_since
+        return max(0.0, self._due - (self.link.time if since is None else since))
+
+    def hold_calls(self, *, held: bool) -> None:
+        """Hold the count-down to the next call, or let it go on where it was."""
+        if held and self._held_since is None:
+            self._held_since = self.link.time
+        elif not held and self._held_since is not None:
+            self._due += self.link.time - self._held_since
+            self._held_since = None
 
     def set_pace(self, seconds: float) -> None:
         """Set the s between calls, also for the next call."""

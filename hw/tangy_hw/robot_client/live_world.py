@@ -260,11 +260,6 @@ class LiveWorld(LivePlan):
         """Return who sits at a place, by the robot's observations."""
         return self.sitting.get(place, place)
 
-    @property
-    def calls_in(self) -> float:
-        """Time in s until the next number may be called."""
-        return max(0.0, self._due - self.link.time)
-
     def _keep_pace(self) -> None:
         if wait := self.calls_in:
             self.commands.wait(wait)

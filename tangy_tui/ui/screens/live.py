@@ -46,12 +46,9 @@ from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.control import (
     BUSY,
-    MOVE_AGAIN,
     NOT_WHILE_WORKING,
-    VOID_DETAIL,
     WAITS_SHORT,
     WHO_NEEDS_HELP,
-    void_call_words,
     waits_words,
 )
 from tangy_tui.text.live_games import LOOKS_ROUND, MAY_MOVE, frozen_words
@@ -59,7 +56,6 @@ from tangy_tui.text.live_news import seated_words
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
-from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.dialogs.staff_line import TellDialog
 from tangy_tui.ui.fault_console import Work
@@ -198,17 +194,22 @@ class LiveScreen(PlayScreen):
 
     def action_pause(self) -> None:
         """Pause, or continue; after a STOP, let the robot move again."""
-        if self.control.stopped:
-            self._sure(*MOVE_AGAIN, self._let_move)
+        if self._frozen_at_rest and not self.control.stopped:
+            self.go_on()
         else:
-            self._let_move()
+            super().action_pause()
 
-    def _let_move(self) -> None:
-        if self.at_rest and self.control.robot.frozen:  # in a game that is a fault
+    def go_on(self) -> None:
+        """Continue; between two games, let a robot move that was frozen."""
+        if self._frozen_at_rest:
             self._do(GoOn())
             self._tell_now(MAY_MOVE, "dim")
         else:
-            super().action_pause()
+            super().go_on()
+
+    @property
+    def _frozen_at_rest(self) -> bool:
+        return self.at_rest and self.control.robot.frozen  # in a game that is a fault
 
     def action_autonomy(self) -> None:
         """Cycle through the levels of autonomy."""
@@ -252,18 +253,13 @@ class LiveScreen(PlayScreen):
 
     def action_void_call(self) -> None:
         """Take the last call back, after the current behaviour."""
-        if not self.world.called:
-            self._do(TakeBackCall())
-        else:
-            self.run_worker(self._void_call(), name="void", group="call", exclusive=True)
+        self.do_sure(TakeBackCall())
 
-    async def _void_call(self) -> None:
-        label = self._workspace.activity.deck.label(self.world.called[-1])
-        dialog = ConfirmDialog(
-            void_call_words(label), VOID_DETAIL, yes="take it back", no="leave it"
-        )
-        if await self.app.push_screen_wait(dialog):
-            await self._do_beside(TakeBackCall(label))
+    async def _carry_out(self, command: GameCommand) -> None:
+        if isinstance(command, AT_ONCE):
+            await super()._carry_out(command)
+        else:
+            await self._do_beside(command)
             self.query_one(RoomView).show(self.world.scene())
 
     def action_ask_for(self) -> None:

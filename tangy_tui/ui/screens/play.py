@@ -107,11 +107,11 @@ class PlayScreen(PlayStaff):
 
     def action_pause(self) -> None:
         """Pause, or continue; after a STOP, let the robot move again."""
-        stopped = self.control.stopped
-        if self.control.going:
-            self._do(Pause())
-            return
-        self._halted = False
+        self.do_sure(Pause() if self.control.going else GoOn())
+
+    def go_on(self) -> None:
+        """Continue after a pause or a STOP."""
+        stopped, self._halted = self.control.stopped, False
         self._faults.try_again()
         self._do(GoOn())
         if stopped and (asking := self._asking) is not None:

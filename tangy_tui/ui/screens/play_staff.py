@@ -9,6 +9,7 @@ from contextlib import suppress
 from textual.timer import Timer
 
 from tangy_tui.app.command_grammar import Perform, command_reader, read_command, read_screen
+from tangy_tui.app.confirmations import Confirmation, needed_confirmation
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
@@ -34,6 +35,7 @@ from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text.confirmations import confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
 from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, WHO_IS_HERE, example_words
@@ -109,6 +111,35 @@ class PlayStaff(PlayPanels):
         """Pause or continue."""
         raise NotImplementedError
 
+    def go_on(self) -> None:
+        """Continue after a pause or a STOP."""
+        raise NotImplementedError
+
+    def do_sure(self, command: GameCommand) -> None:
+        """Carry out a command; first ask about one that cannot be undone."""
+        asked = needed_confirmation(command, self.control)
+        if asked is not None:
+            self.run_worker(self._make_sure(asked), name="sure", group="sure")
+        elif isinstance(command, GoOn):
+            self.go_on()
+        else:
+            self._do(command)
+
+    async def _make_sure(self, asked: Confirmation) -> None:
+        """Ask about a command; the game waits, also until it is carried out."""
+        words = confirmation_words(asked)
+        dialog = ConfirmDialog(words.question, words.detail, yes=words.yes, no=words.no)
+        with self.control.holding():
+            if await self.app.push_screen_wait(dialog):
+                await self._carry_out(asked.command)
+
+    async def _carry_out(self, command: GameCommand) -> None:
+        """Carry out a command that staff have confirmed."""
+        if isinstance(command, GoOn):
+            self.go_on()
+        else:
+            self._do(command)
+
     def _do(self, command: GameCommand) -> None:
         """Carry out a command of staff, and show its results."""
         self._take(self.control.apply(command))
@@ -169,10 +200,8 @@ class PlayStaff(PlayPanels):
             return
         if isinstance(command, StopRobot):
             await self.run_action("app.stop")
-        elif isinstance(command, GoOn) and not self.control.going:
-            self.action_pause()
         elif command is not None:
-            self._do(command)
+            self._do_typed(command)
 
     def action_presence(self) -> None:
         """Ask staff who has come or left."""
@@ -192,10 +221,13 @@ class PlayStaff(PlayPanels):
     def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:
         """Carry out a command typed during a question."""
         event.stop()
-        if isinstance(event.command, GoOn) and not self.control.going:
+        self._do_typed(event.command)
+
+    def _do_typed(self, command: GameCommand) -> None:
+        if isinstance(command, GoOn) and not self.control.going:
             self.action_pause()
         else:
-            self._do(event.command)
+            self.do_sure(command)
 
     def _refused(self) -> bool:
         """Return whether a STOP or a question has to be handled first, and tell so."""

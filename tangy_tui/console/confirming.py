@@ -1,0 +1,134 @@
+"""Questions in the console before a command that cannot be undone.
+
+They are asked only of a person who types: a script means what it says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from queue import SimpleQueue
+from typing import Generic, TypeVar
+
+from tangy_tui.app.confirmations import needed_confirmation
+from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.app.game_controller import ControllerOutput, GameController
+from tangy_tui.console.typed_yes import TypedYes
+from tangy_tui.learning.teaching_events import Again, Discard, TeacherCommand
+from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.text.confirmations import (
+    NOT_DONE,
+    ConfirmationWords,
+    again_confirmation,
+    confirmation_words,
+    discard_confirmation,
+)
+
+CommandT = TypeVar("CommandT")
+Write = Callable[[str], None]
+
+
+class TypedConfirmation(Generic[CommandT]):
+    """A question about a command, and its answer in a later line."""
+
+    def __init__(self, yes: TypedYes, write: Write) -> None:
+        """Parse the answers with `yes`, and write each sentence with `write`."""
+        self._yes, self._write = yes, write
+        self._asked: tuple[CommandT, ConfirmationWords] | None = None
+
+    @property
+    def open(self) -> bool:
+        """Whether a question is open."""
+        return self._asked is not None
+
+    def _put(
+        self,
+        command: CommandT,
+        words: ConfirmationWords,
+        typed: SimpleQueue[str | None] | None = None,
+    ) -> None:
+        self._asked = command, words
+        self._write(words.line(self._yes.ask(typed)))
+
+    def answer(self, line: str) -> CommandT | None:
+        """Return the command that a line confirms; otherwise write what became of it."""
+        if self._asked is None:
+            return None
+        command, words = self._asked
+        reply = self._yes.answer(line)
+        if isinstance(reply, str):
+            self._write(reply)
+        elif reply is None or reply.alternative is not None:
+            self._write(words.line(self._yes.key))
+        elif reply.yes:
+            self._asked = None
+            return command
+        else:
+            self.drop()
+            self._write(NOT_DONE)
+        return None
+
+    def drop(self) -> None:
+        """Close the question."""
+        self._asked = None
+
+
+class ConfirmingStaff(TypedConfirmation[GameCommand]):
+    """Asks staff whether they mean a command; the game is held while a question is open."""
+
+    def __init__(self, controller: GameController, yes: TypedYes, write: Write) -> None:
+        """Ask about commands for a controller."""
+        super().__init__(yes, write)
+        self._controller = controller
+        self._hold = ExitStack()
+
+    def ask(self, command: GameCommand, typed: SimpleQueue[str | None] | None) -> bool:
+        """Return whether a command needs an answer first, and ask for it.
+
+        Args:
+            command: the command.
+            typed: the lines read so far, of which answers are dropped; None: unread input.
+        """
+        asked = needed_confirmation(command, self._controller) if self._yes.typed else None
+        if asked is not None:
+            self._hold.enter_context(self._controller.holding())
+            self._put(asked.command, confirmation_words(asked), typed)
+        return asked is not None
+
+    def drop(self) -> None:
+        """Close the question, and let the game go on."""
+        super().drop()
+        self._hold.close()
+
+    def end_of_hold(self) -> Callable[[], Sequence[ControllerOutput]]:
+        """Return a function that lets the game go on, once a confirmed command is carried out."""
+        hold = self._hold.pop_all()
+
+        def end() -> Sequence[ControllerOutput]:
+            hold.close()
+            return ()
+
+        return end
+
+
+class ConfirmingTeacher(TypedConfirmation[TeacherCommand]):
+    """Asks a teacher before steps of the demonstration are taken back or discarded."""
+
+    def __init__(self, teaching: TeachingSession, yes: TypedYes, write: Write) -> None:
+        """Ask about commands for a teaching session."""
+        super().__init__(yes, write)
+        self._teaching = teaching
+
+    def ask(self, command: TeacherCommand) -> TeacherCommand | None:
+        """Return a command that needs no answer; otherwise ask, and return None."""
+        present = self._teaching.demonstration
+        steps, words = len(present.steps), None
+        match command:
+            case Discard() if steps:
+                words = discard_confirmation(steps)
+            case Again(present.id, kept) if 0 <= kept < steps:
+                words = again_confirmation(kept + 1, steps)
+        if words is None or not self._yes.typed:
+            return command
+        self._put(command, words)
+        return None

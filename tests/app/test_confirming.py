@@ -1,0 +1,166 @@
+"""Commands that cannot be undone ask a person who types, and ask a script nothing."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+import pytest
+
+from tangy_tui.app.confirmations import needed_confirmation
+from tangy_tui.app.game_commands import EndGame, GoOn, Pause, StopRobot, TakeBackCall
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.terminal_session import TerminalSession
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.staff import StaffLines
+from tangy_tui.console.typed_yes import TypedYes
+from tangy_tui.learning.policies import load_policy
+
+PATIENCE = 20.0  # s
+
+
+@pytest.fixture
+def data_folder(taught: Path) -> Path:
+    """A folder in which three demonstrations were given and learnt from."""
+    return taught
+
+
+@pytest.fixture
+def control(workspace: Workspace) -> GameController:
+    """A simulated game that has begun."""
+    learnt, _ = load_policy(workspace.store, workspace.activity)
+    controller = GameController(workspace.supervision(learnt, 4, asks=True), "Ada")
+    controller.begin()
+    return controller
+
+
+def called(control: GameController) -> tuple[int, ...]:
+    return control.supervision.world.scene().called
+
+
+def call_once(control: GameController) -> None:
+    """Play until a number is called."""
+    for _ in range(20):
+        if called(control):
+            return
+        control.next()
+    pytest.fail("nothing was called")
+
+
+class Typist:
+    """Types each line after some words were written."""
+
+    def __init__(self, *lines: tuple[str, str]) -> None:
+        self.written: list[str] = []
+        self._lines = iter(lines)
+        self._came = threading.Condition()
+        self._read = 0  # lines written before the last one was typed
+
+    def write(self, line: str) -> None:
+        with self._came:
+            self.written.append(line)
+            self._came.notify_all()
+
+    def read(self) -> str | None:
+        after, line = next(self._lines, ("", ""))
+        if not line:
+            return None
+        with self._came:
+
+            def found() -> bool:
+                return any(after in one for one in self.written[self._read :])
+
+            assert self._came.wait_for(found, PATIENCE), (after, self.written)
+            self._read = len(self.written)
+        return line
+
+    def plays(self, workspace: Workspace, *, typed: bool = True) -> str:
+        """Play a game; return what was written."""
+        learnt, _ = load_policy(workspace.store, workspace.activity)
+        yes = TypedYes(terminal=typed, session=TerminalSession, flush=lambda: None)
+        control = GameController(workspace.supervision(learnt, 4, asks=True), "Ada")
+        games = StaffLines(
+            control,
+            workspace.name,
+            lambda wanted: workspace.find_person(wanted).id,
+            self.read,
+            self.write,
+            speed=300,
+            yes=yes,
+        )
+        games.run(1)
+        return "\n".join(self.written)
+
+
+def test_the_end_asks_a_person_who_types(workspace: Workspace) -> None:
+    told = Typist(
+        ("call number", "end"), ("End the game?", "perhaps"), ("End the game?", "n"),
+        ("call number", "end"), ("End the game?", "y"),
+    ).plays(workspace)  # fmt: skip
+    assert told.count("End the game?") == 3 and "Not done." in told
+    assert "You ended the game." in told.split("Not done.")[1]
+
+
+def test_a_call_is_taken_back_only_after_a_yes(workspace: Workspace) -> None:
+    told = Typist(
+        ("call number", "take back"), ("Take ", "n"), ("call number", "take back"), ("Take ", "y"),
+        ("counts as not called", "end"), ("End the game?", "y"),
+    ).plays(workspace)  # fmt: skip
+    assert "counts as not called" not in told.split("Not done.")[0]
+
+
+def test_a_script_is_asked_nothing(workspace: Workspace) -> None:
+    told = Typist(
+        ("call number", "take back"), ("counts as not called", "end")
+    ).plays(workspace, typed=False)  # fmt: skip
+    assert "You ended the game." in told and "Type Y" not in told
+
+
+def test_a_stop_needs_no_answer_first(workspace: Workspace) -> None:
+    told = Typist(
+        ("call number", "end"), ("End the game?", "stop"), ("STOP", "end"), ("End the game?", "y")
+    ).plays(workspace)
+    assert "You ended the game." in told.split("STOP")[1]
+
+
+def test_nothing_is_done_while_a_question_is_open(control: GameController) -> None:
+    call_once(control)
+    before = called(control)
+    with control.holding():
+        for _ in range(20):
+            control.next()
+        assert called(control) == before
+    for _ in range(20):
+        control.next()
+    assert called(control) != before
+
+
+def test_a_call_is_named_by_the_question(control: GameController) -> None:
+    assert needed_confirmation(TakeBackCall(), control) is None  # nothing was called
+    call_once(control)
+    label = control.supervision.world.activity.deck.label(called(control)[-1])
+    asked = needed_confirmation(TakeBackCall(), control)
+    assert asked is not None and asked.command == TakeBackCall(label)
+    assert needed_confirmation(TakeBackCall("Z-9"), control) is None
+
+
+def test_going_on_asks_after_a_pause_of_the_program_alone(control: GameController) -> None:
+    control.apply(Pause())
+    assert needed_confirmation(GoOn(), control) is None
+    control.apply(Pause(unasked=True))
+    asked = needed_confirmation(GoOn(), control)
+    assert asked is not None and asked.kind == "go on"
+    control.apply(GoOn())
+    control.apply(Pause())
+    assert needed_confirmation(GoOn(), control) is None
+
+
+def test_a_stopped_simulation_goes_on_without_a_question(control: GameController) -> None:
+    control.apply(StopRobot())
+    assert needed_confirmation(GoOn(), control) is None  # there is no robot that could move
+
+
+def test_a_game_that_is_over_ends_without_a_question(control: GameController) -> None:
+    assert needed_confirmation(EndGame(), control) is not None
+    control.apply(EndGame())
+    assert needed_confirmation(EndGame(), control) is None
