@@ -153,7 +153,8 @@ class PlayStaff(PlayPanels):
                     self._tell_pace(said)
                     continue
                 self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
-        self._tell([result for result in results if not isinstance(result, StaffNote)])
+        ended = any(isinstance(one, StaffNote) and one.kind == "ended" for one in results)
+        self._tell([one for one in results if not isinstance(one, StaffNote)], ended)
 
     def _tell_pace(self, said: str) -> None:
         """Show the pace once it is stable: the keys change it in steps."""
