@@ -40,6 +40,8 @@ class TypedYes:
         """Whether a person types the lines."""
         self._digit = terminal and (setting == "digit" or (setting == "auto" and session().remote))
         self._flush = flush or _flush_input
+        self.drop_begun: Callable[[Callable[[str], bool]], None] = lambda dropped: None
+        """Drops the line that is being typed, if a function returns True for it."""
         self._random = random.SystemRandom()
         self.key = "Y"
 
@@ -54,6 +56,7 @@ class TypedYes:
             self._flush()
         elif self.typed and typed is not None:
             _drop_answers(typed)
+            self.drop_begun(lambda begun: read_answer(begun) is not None)
         if self._digit:
             self.key = self._random.choice([digit for digit in DIGITS if digit != self.key])
         return self.key

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tangy_sim.worlds.injection import Injection
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.staff import StaffLines
+    from tangy_tui.console.typed_lines import TypedLines
     from tangy_tui.learning.policy import Policy
     from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -149,8 +150,13 @@ def play_with_staff(
         speed: a ratio to real time, for simulated games.
         past: an interrupted game to resume first.
     """
-    lines = _lines(workspace, supervision, teacher, robot=robot, speed=speed, past=past)
-    return lines.run(games)
+    from tangy_tui.console.typed_lines import typed_lines
+
+    with typed_lines(print_line) as typed:
+        lines = _lines(
+            workspace, supervision, teacher, robot=robot, speed=speed, past=past, typed=typed
+        )
+        return lines.run(games)
 
 
 def play_by_turns(
@@ -185,6 +191,7 @@ def _lines(
     robot: LiveWorld | None = None,
     speed: float | None = None,
     past: PastGame | None = None,
+    typed: TypedLines | None = None,
 ) -> StaffLines:
     from tangy_tui.app.freeze_watch import FreezeGuard
     from tangy_tui.app.game_controller import GameController
@@ -210,17 +217,21 @@ def _lines(
     def new(events: Sequence[Event]) -> list[str]:
         return [] if live is None else [*news_lines(live.take(events), workspace.name)]
 
+    write = print_line if typed is None else typed.write
+    yes = TypedYes(terminal=is_typed(None), setting=workspace.settings.question)
+    if typed is not None:
+        yes.drop_begun = typed.drop
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
-    workspace.door.attach(control, lambda who: print_line(stopped_by_guest(who, control.by)))
-    FreezeGuard(control, lambda seconds: print_line(told_words(seconds))).keep_looking()
+    workspace.door.attach(control, lambda who: write(stopped_by_guest(who, control.by)))
+    FreezeGuard(control, lambda seconds: write(told_words(seconds))).keep_looking()
     return StaffLines(
         control,
         workspace.name,
         lambda wanted: workspace.find_person(wanted).id,
-        line_reader(None),
-        print_line,
+        line_reader(None) if typed is None else typed.read,
+        write,
         speed=speed,
         also=new,
         demonstrations=shown,
-        yes=TypedYes(terminal=is_typed(None), setting=workspace.settings.question),
+        yes=yes,
     )

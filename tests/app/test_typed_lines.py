@@ -1,0 +1,152 @@
+"""Lines that are typed while the program writes: both can be read."""
+
+from __future__ import annotations
+
+import os
+import pty
+import termios
+import threading
+from collections.abc import Callable, Iterator
+
+import pyte
+import pytest
+
+from tangy_tui.console.typed_lines import LineEditor, TypedLines, cells_of
+from tests.support.waiting import wait_until
+
+COLUMNS = 20
+
+
+class Desk:
+    """A terminal at which somebody types, and its screen."""
+
+    def __init__(self, *, dumb: bool = False) -> None:
+        self.parent, self.child = pty.openpty()
+        termios.tcsetwinsize(self.child, (12, COLUMNS))
+        self._screen = pyte.Screen(COLUMNS, 12)
+        self._screen.set_mode(pyte.modes.LNM)
+        self._stream = pyte.Stream(self._screen)
+        self.lines = TypedLines(self.child, self, self.print_line, dumb=dumb)  # type: ignore[arg-type]
+        self.read: list[str | None] = []
+
+    def write(self, text: str) -> None:
+        self._stream.feed(text)
+
+    def flush(self) -> None:
+        """Nothing is kept."""
+
+    def print_line(self, line: str) -> None:
+        self.write(f"{line}\n")
+
+    def reads(self) -> None:
+        """Read lines in a thread, up to the end of the input."""
+
+        def read() -> None:
+            while not self.read or self.read[-1] is not None:
+                self.read.append(self.lines.read())
+
+        self.lines.prepare()
+        threading.Thread(target=read, daemon=True).start()
+
+    def type(self, text: str) -> None:
+        os.write(self.parent, text.encode())
+
+    @property
+    def shown(self) -> list[str]:
+        return [line.rstrip() for line in self._screen.display if line.strip()]
+
+    def shows(self, *lines: str) -> Callable[[], bool]:
+        return lambda: self.shown == list(lines)
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    made = Desk()
+    made.reads()
+    yield made
+    made.type("\x15\x04")
+    wait_until(lambda: made.read[-1:] == [None])
+    made.lines.restore()
+
+
+def typed(keys: str) -> tuple[list[str], str]:
+    """Return the lines that keys complete, and the text of the next one."""
+    editor = LineEditor()
+    lines = [line for one in keys if (line := editor.take(one)) is not None]
+    return lines, editor.text
+
+
+@pytest.mark.parametrize(
+    ("keys", "lines", "text"),
+    [
+        ("end\r", ["end"], ""),
+        ("emd\x7f\x7fnd\n", ["end"], ""),
+        ("take bakc\x17back\r", ["take back"], ""),
+        ("nonsense\x15where", [], "where"),
+        ("a\x1b[A\x1b[1;5Cb\x1bOPc", [], "abc"),
+        ("\x07ñandú", [], "ñandú"),
+        ("\x7f\x17\x15", [], ""),
+    ],
+)
+def test_keys_edit_the_line(keys: str, lines: list[str], text: str) -> None:
+    assert typed(keys) == (lines, text)
+
+
+def test_wide_and_combining_characters_have_their_width() -> None:
+    assert cells_of("a") == 1 and cells_of("日本") == 4 and cells_of("e\u0301") == 1
+
+
+def test_output_goes_above_the_typed_text(desk: Desk) -> None:
+    desk.type("take b")
+    wait_until(desk.shows("take b"))
+    desk.lines.write("B-9 is called.")
+    assert desk.shown == ["B-9 is called.", "take b"]
+    desk.type("ack\r")
+    wait_until(lambda: desk.read == ["take back\n"])
+    desk.lines.write("Taken back.")
+    assert desk.shown == ["B-9 is called.", "take back", "Taken back."]
+
+
+def test_typed_text_that_wraps_is_moved_as_a_whole(desk: Desk) -> None:
+    long = "x" * COLUMNS + "y" * COLUMNS + "z"
+    desk.type(long)
+    wait_until(lambda: desk.shown[-1:] == ["z"])
+    desk.lines.write("Called.")
+    assert desk.shown == ["Called.", "x" * COLUMNS, "y" * COLUMNS, "z"]
+    desk.type("\x7f")
+    wait_until(desk.shows("Called.", "x" * COLUMNS, "y" * COLUMNS))
+
+
+def test_an_answer_begun_before_its_question_is_dropped(desk: Desk) -> None:
+    desk.type("y")
+    wait_until(desk.shows("y"))
+    desk.lines.drop(lambda text: text == "y")
+    desk.lines.write("End the game?")
+    desk.type("n\r")
+    wait_until(lambda: desk.read == ["n\n"])
+    assert desk.shown == ["End the game?", "n"]
+
+
+def test_lines_typed_at_once_come_one_by_one(desk: Desk) -> None:
+    desk.type("where\rwhy\r")
+    wait_until(lambda: desk.read == ["where\n", "why\n"])
+
+
+def test_a_dumb_terminal_gets_the_typed_text_again() -> None:
+    desk = Desk(dumb=True)
+    desk.reads()
+    desk.type("en")
+    wait_until(desk.shows("en"))
+    desk.lines.write("Called.")
+    assert desk.shown == ["en", "Called.", "en"]
+    desk.type("d\r\x04")
+    wait_until(lambda: desk.read == ["end\n", None])
+
+
+def test_the_terminal_is_given_back_as_it_was() -> None:
+    desk = Desk()
+    before = termios.tcgetattr(desk.child)
+    desk.lines.prepare()
+    assert not termios.tcgetattr(desk.child)[3] & termios.ECHO
+    desk.lines.restore()
+    assert termios.tcgetattr(desk.child) == before
