@@ -1,7 +1,8 @@
 """A typed yes in the console: y, or a digit if the person is on another machine.
 
 A line typed before its question does not answer it. From another machine its delay is unknown, so
-there the yes is a digit that the question names.
+there the yes is a digit that the question names. A yes that comes faster than anybody reacts was
+typed before the question could be read, so that Tangy asks for it again.
 """
 
 from __future__ import annotations
@@ -10,11 +11,15 @@ import random
 import sys
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
+from time import monotonic
 
 from tangy_tui.app.command_grammar import read_answer
 from tangy_tui.app.terminal_session import DIGITS, QuestionKey, TerminalSession, terminal_session
 from tangy_tui.learning.verification import Asked, Offered, Reply, Verification
-from tangy_tui.text.questions import yes_words
+from tangy_tui.text.questions import TOO_EARLY, yes_words
+
+REACTION_SECONDS = 0.1
+"""Nobody reacts to what they see in less (a simple visual reaction takes about .2 s)."""
 
 
 class TypedYes:
@@ -27,6 +32,7 @@ class TypedYes:
         setting: QuestionKey = "auto",
         session: Callable[[], TerminalSession] = terminal_session,
         flush: Callable[[], None] | None = None,
+        clock: Callable[[], float] = monotonic,
     ) -> None:
         """Parse typed answers.
 
@@ -35,6 +41,7 @@ class TypedYes:
             setting: the user's setting of the key for yes.
             session: returns where the terminal is.
             flush: drops typed input that was not read yet (default: of standard input).
+            clock: returns s on a scale that only goes forward.
         """
         self.typed = terminal
         """Whether a person types the lines."""
@@ -42,6 +49,8 @@ class TypedYes:
         self._flush = flush or _flush_input
         self.drop_begun: Callable[[Callable[[str], bool]], None] = lambda dropped: None
         """Drops the line that is being typed, if a function returns True for it."""
+        self._clock = clock
+        self._readable_from = clock()
         self._random = random.SystemRandom()
         self.key = "Y"
 
@@ -57,6 +66,7 @@ class TypedYes:
         elif self.typed and typed is not None:
             _drop_answers(typed)
             self.drop_begun(lambda begun: read_answer(begun) is not None)
+        self._readable_from = self._clock() + REACTION_SECONDS
         if self._digit:
             self.key = self._random.choice([digit for digit in DIGITS if digit != self.key])
         return self.key
@@ -68,7 +78,12 @@ class TypedYes:
     def answer(self, line: str) -> Reply | str | None:
         """Return the answer in a line, the problem with it, or None if it is none."""
         reply = read_answer(line)
-        if not self._digit or reply is None:
+        if reply is None:
+            return None
+        executes = reply.yes or reply.alternative is not None
+        if self.typed and executes and self._clock() < self._readable_from:
+            return TOO_EARLY
+        if not self._digit:
             return reply
         if line.strip() == self.key:
             return Reply(yes=True)

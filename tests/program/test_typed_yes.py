@@ -11,8 +11,9 @@ from queue import SimpleQueue
 import pytest
 
 from tangy_tui.app.terminal_session import TerminalSession
-from tangy_tui.console.typed_yes import TypedYes
+from tangy_tui.console.typed_yes import REACTION_SECONDS, TypedYes
 from tangy_tui.learning.verification import Reply
+from tangy_tui.text.questions import TOO_EARLY
 from tests.support.terminal import TANGY, Terminal
 
 HERE, ELSEWHERE = TerminalSession(), TerminalSession(remote=True)
@@ -28,17 +29,43 @@ def test_a_script_answers_with_y_anywhere() -> None:
 
 def test_the_yes_of_a_local_terminal_is_y_and_drops_input_typed_ahead() -> None:
     dropped: list[bool] = []
-    yes = TypedYes(terminal=True, session=lambda: HERE, flush=lambda: dropped.append(True))
+    yes = TypedYes(
+        terminal=True,
+        session=lambda: HERE,
+        flush=lambda: dropped.append(True),
+        clock=iter((0.0, 5.0, 6.0)).__next__,
+    )
     assert yes.ask() == "Y"
     assert dropped == [True]
     assert yes.answer("yes") == Reply(yes=True)
 
 
+def test_a_yes_typed_faster_than_anybody_reacts_is_asked_for_again() -> None:
+    now = 0.0
+    yes = TypedYes(terminal=True, session=lambda: HERE, flush=lambda: None, clock=lambda: now)
+    yes.ask()
+    now = REACTION_SECONDS / 2
+    assert yes.answer("y") == TOO_EARLY
+    assert yes.answer("2") == TOO_EARLY
+    assert yes.answer("n") == Reply(yes=False)
+    assert yes.answer("call number") is None
+    now = REACTION_SECONDS
+    assert yes.answer("y") == Reply(yes=True)
+
+
+def test_a_script_may_answer_at_once() -> None:
+    yes = TypedYes(terminal=False, clock=lambda: 0.0)
+    yes.ask()
+    assert yes.answer("y") == Reply(yes=True)
+
+
 def test_the_yes_of_a_remote_terminal_is_a_changing_digit() -> None:
-    yes = TypedYes(terminal=True, session=lambda: ELSEWHERE, flush=lambda: None)
+    now = 0.0
+    yes = TypedYes(terminal=True, session=lambda: ELSEWHERE, flush=lambda: None, clock=lambda: now)
     keys = [yes.ask() for _ in range(20)]
     assert set(keys) <= set("456789")
     assert all(first != second for first, second in pairwise(keys))
+    now = 1.0
     assert yes.answer(keys[-1]) == Reply(yes=True)
     assert yes.answer("y") == f"The yes of this question is {keys[-1]}."
     assert yes.answer("n") == Reply(yes=False)
@@ -103,6 +130,7 @@ def test_a_y_typed_ahead_executes_nothing(here: Terminal) -> None:
     here.until("Not done: greet everyone.")
     here.type("greet everyone\n")
     here.until(lambda text: text.count("Type Y to do it") == 2)
+    here.settle(2 * REACTION_SECONDS)
     here.type("y\n")
     here.until("Tangy says:")
 
@@ -113,7 +141,9 @@ def test_a_question_on_a_remote_terminal_names_its_digit(elsewhere: Terminal) ->
     shown = elsewhere.until("to do it, or N")
     found = re.search(r"Type (\d) to do it", shown)
     assert found is not None
+    elsewhere.settle(2 * REACTION_SECONDS)
     elsewhere.type("y\n")
     elsewhere.until(f"The yes of this question is {found[1]}.")
+    elsewhere.settle(2 * REACTION_SECONDS)
     elsewhere.type(f"{found[1]}\n")
     elsewhere.until("Tangy says:")

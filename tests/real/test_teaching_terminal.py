@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tangy_tui.console.typed_yes import REACTION_SECONDS
+
 if TYPE_CHECKING:
     from tests.real.conftest import OpenTerminal
     from tests.support.terminal import Tmux
@@ -148,6 +150,7 @@ def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     terminal.until("or one of:")
     terminal.type("greet everyone\n")
     terminal.until("Type Y to do it")
+    terminal.settle(2 * REACTION_SECONDS)
     terminal.type("y\n")
     terminal.until("-> greet everyone")
     terminal.type("quit\n")
