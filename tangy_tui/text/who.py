@@ -4,6 +4,7 @@ from __future__ import annotations
 
 WHO = "Who are you?"
 WHO_DETAIL = "Tangy notes who taught each game, so that it can tell teachers apart."
+TOUR_FOLLOWS = "Next, a tour of two minutes shows you how to teach a game."
 NAME_KEYS = "enter keeps the name   esc not now"
 TYPE_NAME = "Type your name and press Enter, or just Enter to be called {}."
 TYPE_A_NAME = "Type your name and press Enter."

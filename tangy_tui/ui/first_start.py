@@ -10,7 +10,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import read_game_world
 from tangy_tui.app.teacher_profile import NOBODY, change_name, read_profile
 from tangy_tui.text import old_games as text
-from tangy_tui.text.who import renamed_teacher
+from tangy_tui.text.who import TOUR_FOLLOWS, WHO_DETAIL, renamed_teacher
 
 if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
@@ -28,7 +28,9 @@ async def first_start(
     Otherwise the home screen stays: staff may have come to run a game.
     """
     if asks and not read_profile(program.workspace.store.folder).name:
-        program.new_teacher = await ask_name(program, unasked=True) is not None
+        leads = start is None and not _is_taught(program)
+        detail = f"{WHO_DETAIL}\n{TOUR_FOLLOWS}" if leads else WHO_DETAIL
+        program.new_teacher = await ask_name(program, detail, unasked=True) is not None
     if start is not None:
         try:
             await start(program)
@@ -49,16 +51,21 @@ def _is_taught(program: Program) -> bool:
     return bool(read_library(workspace.store, workspace.activity.name).finished)
 
 
-async def ask_name(program: Program, *, unasked: bool = False) -> str | None:
+async def ask_name(
+    program: Program, detail: str = WHO_DETAIL, *, unasked: bool = False
+) -> str | None:
     """Ask for the teacher's name, and store it; None: it is unchanged.
 
-    An `unasked` question ignores keys typed before it was visible.
+    Args:
+        program: the program.
+        detail: what the question tells.
+        unasked: ignore keys typed before the question was visible.
     """
     from tangy_tui.ui.dialogs.name import NameDialog
 
     usual = program.workspace.teacher
     suggested = "" if usual == NOBODY else usual  # the placeholder distinguishes nobody
-    name = await program.push_screen_wait(NameDialog(suggested, unasked=unasked))
+    name = await program.push_screen_wait(NameDialog(suggested, detail=detail, unasked=unasked))
     return name if name is not None and _keep(program, name) else None
 
 

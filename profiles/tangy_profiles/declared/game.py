@@ -214,10 +214,11 @@ class DeclaredGame:
         `at` is the time for timers, in s of this game (default: now).
         """
         now, self.now = self.now, self.now if at is None else at
-        stage, about = self.stage()
-        seen = stage.name, tuple(self.value(name, about) for name in stage.sees)
-        self.now = now
-        return seen
+        try:
+            stage, about = self.stage()
+            return stage.name, tuple(self.value(name, about) for name in stage.sees)
+        finally:
+            self.now = now
 
     def allows(self, name: str, whom: str | None) -> bool:
         """Return whether a behaviour is possible now, for a player or the group."""
