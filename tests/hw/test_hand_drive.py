@@ -18,7 +18,7 @@ from tangy_hw.device_protocols import STILL, Scan, Stamped, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, OVERRIDE, HandDrive
-from tangy_hw.robot_process.wheels import Wheels
+from tangy_hw.robot_process.wheels import OLD_SECONDS, Wheels
 from tangy_profiles.robot import load_robot
 from tests.bench.people_keys import speed_when_met
 from tests.hw.live_bodies import ToldBody
@@ -147,6 +147,21 @@ class TestClamp:
         assert len(parts.told) == 1
         may_drive(parts.told, LIMITS.max_speed)
         may_drive([wheels.driven], LIMITS.max_speed)
+
+    @pytest.mark.parametrize(("command", "told"), [(Twist(0.3, 0.0), []), (STILL, ["stop"])])
+    async def test_a_command_decided_before_a_freeze_moves_nothing_after_it(
+        self, command: Twist, told: list[object]
+    ) -> None:
+        parts, now = ToldBody(), 0.0
+        wheels = Wheels(parts.base, LIMITS, clock=lambda: now)
+        wheels.send(command)
+        now = OLD_SECONDS  # frozen before the command was written
+        assert wheels.sent is not None
+        await soon(wheels.sent)
+        assert parts.told == told
+        wheels.send(Twist(0.2, 0.0))
+        await soon(wheels.sent)
+        assert parts.told == [*told, Twist(0.2, 0.0)]
 
     @pytest.mark.slow
     @given(TWISTS, TWISTS, st.sampled_from(["line", "hand", "navigator", "both"]))

@@ -12,16 +12,25 @@ from functools import partial
 
 from tangy_hw.device_protocols import STILL, Base, DeviceError, Twist
 from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.robot_process.tick_watchdog import time_awake_and_asleep
+
+OLD_SECONDS = 0.3
+"""The age of a command that is not carried out any more; the next tick decides anew."""
 
 
 class Wheels:
     """Sends velocity commands to a base without waiting for it."""
 
-    def __init__(self, base: Base, limits: MotionLimits) -> None:
-        """Set the base and its limits."""
+    def __init__(
+        self,
+        base: Base,
+        limits: MotionLimits,
+        clock: Callable[[], float] = time_awake_and_asleep,
+    ) -> None:
+        """Set the base, its limits, and a clock in s that goes on while the process is frozen."""
         self.driven = STILL
         """Last command."""
-        self._base, self._limits = base, limits
+        self._base, self._limits, self._clock = base, limits, clock
         self.sent: asyncio.Task[None] | None = None
         self._again = False
 
@@ -45,9 +54,13 @@ class Wheels:
         self.driven = command
         if command == STILL:
             self._again = False
-        base = self._base
-        work = base.stop if command == STILL else partial(base.drive, command)
+        work = self._base.stop if command == STILL else partial(self._drive, command, self._clock())
         self.sent = asyncio.create_task(_quietly(work))
+
+    async def _drive(self, command: Twist, decided: float) -> None:
+        """Drive, unless the process was frozen since the command was decided."""
+        if self._clock() - decided < OLD_SECONDS:
+            await self._base.drive(command)
 
     async def stop(self) -> None:
         """Stop the base now; pending commands are dropped."""
