@@ -118,5 +118,5 @@ def person_words(person: PersonNow) -> str:
 
 
 def more_words(count: int) -> str:
-    """Tell how many more people there are than the panel shows."""
-    return f"and {count} more"
+    """Tell how many more people there are than the panel shows, and the key to see them."""
+    return f"{count} more: ↓"

@@ -66,11 +66,12 @@ class StaffPanel(RowView, can_focus=True):
     """Draws given values line by line; only changed lines go to the terminal."""
 
     DEFAULT_CSS = """
-    StaffPanel { scrollbar-gutter: auto; }
+    StaffPanel { scrollbar-gutter: auto; scrollbar-size-vertical: 0; }
     """
     HELP = (
         "The last call, the pattern to play for, the time, the pace, what Tangy does next and why, "
-        "and each person: how long they have waited, and when Tangy last visited them."
+        "and each person: how long they have waited, and when Tangy last visited them. If there "
+        "are more people than lines, up and down scroll."
     )
 
     def __init__(self) -> None:
@@ -80,6 +81,7 @@ class StaffPanel(RowView, can_focus=True):
         self._facts: tuple[str, ...] = ()
         self._people: tuple[PersonLine, ...] = ()
         self._board: tuple[Row, ...] = ()
+        self._across = 1  # people in a line
 
     def show(
         self,
@@ -99,6 +101,17 @@ class StaffPanel(RowView, can_focus=True):
         """Lay out again."""
         self._draw()
 
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Tell how many people are below the visible lines; offsets are in lines."""
+        super().watch_scroll_y(old_value, new_value)
+        self._tell_below()
+
+    def _tell_below(self) -> None:
+        below = len(self._rows) - self._rows.height - self.scroll_offset.y
+        last = len(self._people) % self._across or self._across
+        count = (below - 1) * self._across + last if below > 0 else 0
+        self.border_subtitle = more_words(count) if count else ""
+
     def _draw(self) -> None:
         width, height = self._rows.width, self._rows.height
         if not self.is_attached or width < 10:
@@ -110,6 +123,7 @@ class StaffPanel(RowView, can_focus=True):
         rows += self._block(width, height)
         rows += self._everybody(width, max(1, height - len(rows)))
         self._rows.put(rows)
+        self._tell_below()
 
     def _block(self, width: int, height: int) -> list[Row]:
         """Draw the call in blocks, and the facts beside it."""
@@ -143,15 +157,12 @@ class StaffPanel(RowView, can_focus=True):
         return rows + [((line.replace(HARD, " "), "text"),) for line in lines[:2]]
 
     def _everybody(self, width: int, height: int) -> list[Row]:
-        """Draw people in as many columns as fit; the first ones, if there are too many."""
+        """Draw people in as many columns as fit; in narrow ones if `height` lines are too few."""
         across = max(1, width // SLOT)
         if across * height < len(self._people):
             across = max(1, width // NARROW)
-        shown = self._people[: across * height]
-        if left := len(self._people) - len(shown):
-            shown = (*shown[:-1], (more_words(left + 1), "", "dim"))
-        slot = width // across
-        longest = max((cell_len(clean(name)) for name, how, _ in shown if how), default=0)
+        shown, slot, self._across = self._people, width // across, across
+        longest = max((cell_len(clean(name)) for name, _, _ in shown), default=0)
         names = min(NAME if slot >= SLOT else SHORT_NAME, longest)
         return [
             tuple(
@@ -165,8 +176,6 @@ class StaffPanel(RowView, can_focus=True):
     @staticmethod
     def _person(person: PersonLine, width: int, columns: int) -> Row:
         name, how, ink = person
-        if not how:  # the number of people left out
-            return ((fit(clean(name), width), ink),)
         how = how if width >= SLOT else how.partition(",")[0]
         return (
             (fit(clean(name), columns) + " ", "strong" if ink == "warn" else "text"),

@@ -1,0 +1,44 @@
+"""The panel for staff: everybody can be read, however many there are."""
+
+from __future__ import annotations
+
+from textual.app import ComposeResult
+
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
+from tests.pilot.conftest import Run
+
+
+class Panel(TangyScreen[None]):
+    """A screen with the panel of staff alone, ten lines high."""
+
+    CSS = "StaffPanel { height: 10; }"
+
+    def compose(self) -> ComposeResult:
+        yield StaffPanel()
+
+
+async def test_people_beyond_the_last_line_are_counted_and_scrolled_to(run: Run) -> None:
+    people = [(f"Person {number:02}", "no visit yet", "text") for number in range(24)]
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.focus()
+        panel.show("B7", "Next: call number.", ["1:01 so far"], people)
+        await pilot.pause()
+        seen = {name for name, _, _ in people if name in pilot.text()}
+        assert 0 < len(seen) < 24
+        assert panel.border_subtitle == f"{24 - len(seen)} more: ↓"
+        for _ in range(8):
+            await pilot.press("down")
+            await pilot.pause()
+            seen |= {name for name, _, _ in people if name in pilot.text()}
+        assert len(seen) == 24
+        assert not panel.border_subtitle
+
+
+async def test_a_few_people_need_no_count(run: Run) -> None:
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.show("B7", "Next: call number.", ["1:01 so far"], [("Rosa", "asks 10 s", "warn")])
+        await pilot.pause()
+        assert "Rosa" in pilot.text() and not panel.border_subtitle
