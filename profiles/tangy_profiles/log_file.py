@@ -341,9 +341,9 @@ def hold(path: Path) -> tuple[FileIO, str]:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         file.close()
-        who = f"process {left}" if left.isdecimal() else "another process"
-        where = f"{who} is writing to {plain(str(path.parent))}"
-        raise StoreBusy(f"{where}; close it, or choose another folder with --data.") from None
+        process = f" (process {left})" if left.isdecimal() else ""
+        where = f"another Tangy{process} is writing to {plain(str(path.parent))}"
+        raise StoreBusy(f"{where}: close it, or choose another folder with --data.") from None
     os.fchmod(file.fileno(), 0o600)
     file.truncate(0)
     os.pwrite(file.fileno(), str(os.getpid()).encode(), 0)

@@ -44,6 +44,14 @@ HELP = (
 )
 
 
+def busy_words(view: GameView, folder: str) -> str:
+    """Tell whose game keeps a command from writing to a data folder, and what to do."""
+    return (
+        f"{view.driver} runs a game ({WORLDS[view.world]}) with the data in {folder}. Try again "
+        "when it is over and that Tangy is closed, or choose another folder with --data."
+    )
+
+
 def stopped_by_guest(guest: str, driver: str) -> str:
     """Tell that an onlooker stopped the robot, who may have the driver's name."""
     if guest == driver:

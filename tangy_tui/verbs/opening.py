@@ -36,12 +36,17 @@ def open_workspace(
     Raises:
         TangyError: the folder, the activity, the robot or the room cannot be read.
     """
+    from tangy_profiles.errors import StoreBusy
     from tangy_tui.app.workspace import Workspace, data_folder
     from tangy_tui.text.rooms import no_chosen_room
 
-    workspace = Workspace(
-        data_folder(data), activity=activity, users=users, write=write, robot=robot, room=room
-    )
+    folder = data_folder(data)
+    try:
+        workspace = Workspace(
+            folder, activity=activity, users=users, write=write, robot=robot, room=room
+        )
+    except StoreBusy as busy:
+        raise StoreBusy(_who_holds(folder) or str(busy)) from None
     try:
         say_notices(workspace.store.notices)
         if workspace.room_problem:
@@ -52,6 +57,19 @@ def open_workspace(
     finally:
         say_aside(workspace.store)
         workspace.close()
+
+
+def _who_holds(folder: Path) -> str:
+    """Tell who runs a game in a data folder; "" if no Tangy there shows one."""
+    from tangy_tui.app.watching import Guest
+    from tangy_tui.text.watching import busy_words
+
+    guest = Guest(folder)
+    try:
+        guest.look_first()
+        return "" if guest.view is None else busy_words(guest.view, plain(str(folder)))
+    finally:
+        guest.close()
 
 
 def open_program(

@@ -334,7 +334,8 @@ def test_a_readable_log_is_made_private(tmp_path: Path) -> None:
 def test_a_second_writer_is_refused_with_the_process_of_the_first(store: Store) -> None:
     with pytest.raises(StoreBusy) as caught:
         Store.open(store.folder)
-    assert f"process {os.getpid()} " in str(caught.value) and "--data" in str(caught.value)
+    assert f"another Tangy (process {os.getpid()}) " in str(caught.value)
+    assert "--data" in str(caught.value)
     assert append_body(store, "still", {}) == 1
     store.close()
     with Store.open(store.folder) as next_one:

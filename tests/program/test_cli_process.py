@@ -114,7 +114,7 @@ def test_a_killed_writer_releases_the_folder(tmp_path: Path) -> None:
     with greeting(data, b"Tangy says") as taught:
         busy = tangy("teach", "--plain", *data, home=tmp_path)
         assert busy.returncode == 2
-        assert f"process {taught.pid} is writing to".encode() in busy.stderr
+        assert f"(process {taught.pid}) is writing to".encode() in busy.stderr
         taught.kill()
         taught.wait(60)
     again = tangy("teach", "--plain", *data, home=tmp_path)

@@ -80,7 +80,7 @@ def test_a_second_writer_is_refused_until_the_first_ends(tmp_path: Path) -> None
         assert child.stdout.readline() == "open\n"
         with pytest.raises(StoreBusy) as caught:
             Store.open(tmp_path)
-        assert f"process {child.pid} " in str(caught.value) and "--data" in str(caught.value)
+        assert f"(process {child.pid})" in str(caught.value) and "--data" in str(caught.value)
         with Store.open(tmp_path, write=False) as console:  # reading is for everybody
             assert [event.kind for event in console.events()] == ["greeting"]
         child.stdin.close()

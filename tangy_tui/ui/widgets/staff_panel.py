@@ -102,7 +102,7 @@ class StaffPanel(RowView, can_focus=True):
         self._draw()
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Tell how many people are below the visible lines; offsets are in lines."""
+        """Tell how many people are below the visible lines; offsets are in rows."""
         super().watch_scroll_y(old_value, new_value)
         self._tell_below()
 
