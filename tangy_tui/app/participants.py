@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity
 from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import GameBeginning
+from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.person import Person, folded, unaccented
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room, room_for
@@ -71,6 +73,18 @@ class Participants:
         """Seat people in the order of these ids."""
         self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
         self.read_people()
+
+    @property
+    def seats_before(self) -> list[str]:
+        """The ids of the people in the order of the last game with people or on the bench.
+
+        People who were not in it come after the others.
+        """
+        games = [event.record for event in self.store.events(GameBeginning)]
+        last = next((game.people for game in reversed(games) if game.world in (BENCH, LIVE)), ())
+        before = {person: place for place, person in enumerate(last)}
+        there = [person.id for person in self.people]
+        return sorted(there, key=lambda person: before.get(person, len(before)))
 
     def gather(self, ids: Sequence[str]) -> None:
         """Make exactly these people the participants, in this order."""

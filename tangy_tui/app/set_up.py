@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
-from tangy_profiles.game_world import BENCH, LIVE
+from tangy_profiles.game_world import BENCH
 from tangy_profiles.health import OK
 from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
@@ -33,6 +32,9 @@ CheckName = Literal["robot", "battery", "tablet", "cards", "faces", "sound"]
 CHECKS: tuple[CheckName, ...] = ("robot", "battery", "tablet", "cards", "faces", "sound")
 CheckState = Literal["off", "ready", "not ready", "not checked", "not told"]
 """Of a check: the robot is off, passed, failed, not checked yet, or no device reports it."""
+
+Choice = Literal["seats", "patterns", "strength"]
+"""A choice that another activity may not have."""
 
 MINUTES = (0, 15, 20, 30, 40, 60, 90)
 """The planned lengths of a session in minutes; 0: no limit."""
@@ -73,6 +75,11 @@ class SetUp:
     """The id of the last person that the robot recognised."""
     said: bool = False
     heard: bool = False
+    dropped: list[Choice] = field(default_factory=list)
+    """The choices that the last change of activity could not keep."""
+    _order: list[str] = field(default_factory=list)  # of seats, also of people who do not play now
+    _moved: bool = False  # whether people changed seats
+    _away: set[str] = field(default_factory=set)  # people who do not play now
 
     @classmethod
     def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
@@ -102,6 +109,7 @@ class SetUp:
         """Swap the seats of two people, as long as the robot is off."""
         at, to = self.seats.index(person), self.seats.index(other)
         if self.world is None and to != at:
+            self._moved = True
             self.seats[at], self.seats[to] = self.seats[to], self.seats[at]
             self.workspace.seat(self.seats)
 
@@ -145,7 +153,7 @@ class SetUp:
         return {name: activity.title for name, activity in there}
 
     def play(self, activity: str) -> None:
-        """Change to another activity, as long as the robot is off.
+        """Change to another activity, as long as the robot is off; `dropped` tells what it drops.
 
         Raises:
             TangyError: it cannot be played, as nobody has taught it.
@@ -156,14 +164,31 @@ class SetUp:
         if self.world is not None or activity == workspace.profile:
             return
         need_policy(workspace.store, load_activity(activity))
+        before = self.seats
         workspace.change_activity(activity)
-        self.patterns, self.strength = [], ""
+        self._order = [*before, *(one for one in self._order if one not in before)]
         self._seat_as_before()
-        self.away &= set(self.seats)
+        away, there = self.away | self._away, set(self.seats)
+        self.away, self._away = away & there, away - there
+        self.dropped = ["seats"] if self._moved and not there & set(self._order) else []
+        self._keep_rules()
+
+    def _keep_rules(self) -> None:
+        """Keep the chosen patterns and strength if the activity has them."""
+        rules, patterns = self.workspace.activity.rules, self.patterns
+        there = [one.name for one in rules.patterns]
+        self.patterns = [name for name in patterns if name in there]
+        if self.patterns != patterns:
+            self.dropped.append("patterns")
+        if self.strength not in ("", *(one.name for one in rules.strengths)):
+            self.strength = ""
+            self.dropped.append("strength")
 
     def _seat_as_before(self) -> None:
-        """Seat people as in the last game with people or on the bench."""
-        self.seats = seats_before(self.workspace)
+        """Seat people as chosen here, or as in the last game with people or on the bench."""
+        place = {person: number for number, person in enumerate(self._order)}
+        usual = self.workspace.seats_before
+        self.seats = sorted(usual, key=lambda person: place.get(person, len(place)))
         if self.seats != [person.id for person in self.workspace.people]:
             self.workspace.seat(self.seats)
 
@@ -345,18 +370,6 @@ class SetUp:
             return False
         self.said = True
         return True
-
-
-def seats_before(workspace: Workspace) -> list[str]:
-    """Return the ids of the people in the order of the last game with people or on the bench.
-
-    People who were not in it come after the others.
-    """
-    games = [event.record for event in workspace.store.events(GameBeginning)]
-    last = next((game.people for game in reversed(games) if game.world in (BENCH, LIVE)), ())
-    before = {person: place for place, person in enumerate(last)}
-    there = [person.id for person in workspace.people]
-    return sorted(there, key=lambda person: before.get(person, len(before)))
 
 
 def battery_of(world: World | None) -> float | None:

@@ -135,6 +135,8 @@ class SetUpLines:
         titles = self.setup.activities()
         called = {title.casefold(): name for name, title in titles.items()}
         self.setup.play(called.get(wanted.casefold(), wanted))
+        if words := text.dropped_words(self.setup.dropped):
+            self._write(words)
         self._command = command_reader(self.setup.workspace.activity, self._find)
 
     def _take(self, command: GameCommand | None) -> bool | None:

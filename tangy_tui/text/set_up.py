@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import assert_never
 
-from tangy_tui.app.set_up import Check, CheckName, SetUp
+from tangy_tui.app.set_up import Check, CheckName, Choice, SetUp
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.rooms import room_words
@@ -21,6 +21,11 @@ SWITCH_FIRST = "First press Enter on Robot: Tangy is still off."
 SEATED = "Tangy is on: people and seats stay. Leave with esc to change them."
 PATTERNS_HOW = "Press the numbers of the patterns, in the order you want."
 SEATS = "The room"
+CHOICES: dict[Choice, str] = {
+    "seats": "the seats",
+    "patterns": "the patterns to play for",
+    "strength": "how strongly Tangy speaks",
+}
 TEAMS_PLAY = "Teams play this activity: people are not added one by one."
 ACTIVITY, ROOM = "Activity", "Room"
 ADD, ADD_GUEST, RENAME = "Who has come?", "Is {} here for good?", "What is {} called?"
@@ -52,6 +57,14 @@ NAMES: dict[CheckName, str] = {
     "faces": "Faces",
     "sound": "Sound",
 }
+
+
+def dropped_words(dropped: Sequence[Choice]) -> str:
+    """Tell which choices the new activity does not have; "" if it kept all."""
+    if not dropped:
+        return ""
+    lost = ", ".join(CHOICES[one] for one in dropped)
+    return f"Not kept, as this activity has other choices: {lost}."
 
 
 def people_words(setup: SetUp) -> str:

@@ -233,7 +233,8 @@ class SetUpScreen(TangyScreen[bool]):
             case "activity" if setup.world is not None:
                 self._say(text.OTHER_ACTIVITY)
             case "activity" if self._choose is not None and not self._busy:
-                self.run_worker(self._ask(self._choose), name="activity", group="check")
+                change = partial(self._change_activity, self._choose)
+                self.run_worker(self._ask(change), name="activity", group="check")
             case "room" if setup.world is not None:
                 self._say(OTHER_ROOM)
             case "room" if not self._busy:
@@ -263,6 +264,11 @@ class SetUpScreen(TangyScreen[bool]):
         line = self.query_one(SetUpList).chosen
         if line is not None and line.kind == "person" and not self._busy:
             self.run_worker(self._ask(partial(self._rename, line.id)), name="name", group="check")
+
+    async def _change_activity(self, choose: Callable[[], Awaitable[None]]) -> None:
+        self.setup.dropped = []
+        await choose()
+        self._say(text.dropped_words(self.setup.dropped))
 
     async def _choose_room(self) -> None:
         if room := await ask_room(self.app, self.setup.rooms()):
