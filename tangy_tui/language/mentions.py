@@ -79,6 +79,8 @@ class Mentions:
 
     def _numbered(self, words: Words, place: int) -> Iterator[tuple[str, str, int]]:
         """Yield noun, number and length of "user 2", "2nd user", "person in seat number 2"."""
+        if place == len(words):
+            return  # "the person in"
         first, rest = words[place], words[place + 1 : place + 5]
         if first in ORDINALS and rest[:1] and rest[0] in self._nouns:
             yield rest[0], str(ORDINALS.index(first) + 1), 2

@@ -168,6 +168,7 @@ def test_every_mention_of_a_person_is_one_token() -> None:
         assert found.words == ("look", "at", SOMEBODY, "card")
         assert found.users == {"user2"}
     assert mentions.find(words_of("look at user 9")).strangers
+    assert mentions.find(words_of("help the person in")).users == set()
 
 
 def test_wordings_are_training_data_but_no_phrases() -> None:
