@@ -7,8 +7,7 @@ and spoken words are understood in the same way.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
@@ -18,7 +17,7 @@ from tangy_profiles.person import Person
 from tangy_tui.language.intent_model import IntentModel
 from tangy_tui.language.mentions import Mentions
 from tangy_tui.language.paraphrases import SURE, TALK, Meaning, Paraphrases
-from tangy_tui.language.phrasebook import Phrase, Phrases
+from tangy_tui.language.phrasebook import Phrase, Phrases, of_one_meaning
 from tangy_tui.language.words import (
     FILLERS,
     Words,
@@ -107,8 +106,8 @@ class Phrasebook:
                 for form in (phrase.shown, phrase.said)
             }
         )
-        self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
-        self._joined = _of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
+        self._bare = of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
+        self._joined = of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
         self._weights = self.table.word_weights()
         self._learnt: Paraphrases | None = None
         if learnt is not None:
@@ -144,12 +143,16 @@ class Phrasebook:
         """Whether it also uses the intent model."""
         return self._learnt is not None
 
-    def paraphrased(self, text: str) -> tuple[Command, ...]:
-        """Return up to three commands by the intent model, likeliest first."""
-        words = words_of(heard := clean(text))
-        if self._learnt is None or self._stranger(words) is not None:
+    def paraphrased(self, text: str, *others: str) -> tuple[Command, ...]:
+        """Return up to three commands by the intent model, likeliest first.
+
+        `others` are further guesses at the same words.
+        """
+        heard = clean(text)
+        if self._learnt is None:
             return ()
-        found = self._learnt.meanings(words)
+        guesses = [words_of(clean(guess)) for guess in (text, *others)]
+        found = self._learnt.meanings(*(w if self._stranger(w) is None else () for w in guesses))
         return tuple(
             _meant(meaning, heard, [other.behaviour for other in found if other is not meaning])
             for meaning in found
@@ -386,15 +389,3 @@ def _command(
 ) -> Command:
     arguments = MappingProxyType({} if found.user is None else {"user": found.user})
     return Command(found.behaviour, arguments, round(confidence, 3), heard, alternatives)
-
-
-def _of_one_meaning(phrases: Iterable[Phrase], key: Callable[[Phrase], str]) -> dict[str, Phrase]:
-    """Return the phrases by a key, without keys of phrases with different meanings."""
-    found: dict[str, list[Phrase]] = defaultdict(list)
-    for phrase in phrases:
-        found[key(phrase)].append(phrase)
-    return {
-        form: same[0]
-        for form, same in found.items()
-        if form and len({(phrase.behaviour, phrase.user) for phrase in same}) == 1
-    }

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
-from tangy_tui.language.words import Words, words_of
+from tangy_tui.language.words import Words, spoken, words_of
 
 SOMEBODY = "somebody0"
 """The token for a person or a seat; no text contains it."""
@@ -24,6 +24,7 @@ ASKS = "ask"  # first word of a question that asks a person to do something
 ARTICLES = frozenset(("a", "an", "the", "any", "next", "another"))
 MADE = ARTICLES - {"the"}  # before a new thing, not an existing one
 EVERY = 3  # each phrase is used with one in this many templates
+PEOPLE = 2  # a sentence is spoken with so many people
 WORDED = 10  # each other wording is used with one in this many templates of talk
 
 
@@ -50,6 +51,14 @@ def examples_of(activity: Activity) -> tuple[Example, ...]:
     for text in _talk(activity):
         found.setdefault(_words(text), "")
     return tuple(Example(words, behaviour) for words, behaviour in found.items() if words)
+
+
+def spoken_examples(activity: Activity, people: Sequence[str]) -> Iterator[str]:
+    """Yield the training sentences as they are spoken, with ways to refer to people in turn."""
+    them = cycle(people or ("somebody",))
+    for words, _ in examples_of(activity):
+        for _ in range(PEOPLE if SOMEBODY in words else 1):
+            yield " ".join(next(them) if word == SOMEBODY else spoken((word,)) for word in words)
 
 
 def _asking(behaviour: Behaviour, activity: Activity) -> Iterator[str]:

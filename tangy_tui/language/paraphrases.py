@@ -9,7 +9,8 @@ of that set learnt. The other thresholds were chosen by hand and checked on the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 from tangy_tui.language.intent_model import IntentModel
@@ -58,26 +59,38 @@ class Paraphrases:
         mentioned = self._mentions.find(words)
         return 1.0 if forbids(mentioned.words) else self._likely(mentioned.words).get("", 0.0)
 
-    def meanings(self, words: Words) -> tuple[Meaning, ...]:
-        """Return up to three meanings, likeliest first; none if words ask for nothing."""
+    def meanings(self, *guesses: Words) -> tuple[Meaning, ...]:
+        """Return up to three meanings, likeliest first; none if words ask for nothing.
+
+        Of several guesses at what was said, best first, the n-th one counts 1/n.
+        """
+        likely: defaultdict[str, float] = defaultdict(float)
+        users: defaultdict[tuple[str, str | None], float] = defaultdict(float)
+        shares = [1 / place for place in range(1, len(guesses) + 1)]
+        for words, share in zip(guesses, shares, strict=True):
+            for name, user, likelihood in self._meanings(words):
+                likely[name] += likelihood * share / sum(shares)
+                users[name, user] += likelihood * share
+        if sum(likely.values()) < UNSURE:
+            return ()
+        whose = dict(sorted(users, key=users.__getitem__))
+        ranked = sorted(likely, key=lambda name: (-likely[name], name))[:MOST]
+        return tuple(
+            Meaning(name, whose[name], likely[name])
+            for name in ranked
+            if name == ranked[0] or likely[name] >= WORTH_OFFERING
+        )
+
+    def _meanings(self, words: Words) -> Iterator[tuple[str, str | None, float]]:
+        """Yield each behaviour that words may ask for, its person, and its probability."""
         mentioned = self._mentions.find(words)
         if not bare(mentioned.words) or forbids(mentioned.words):
-            return ()
-        likely = self._likely(mentioned.words)
-        if 1 - likely.get("", 0.0) < UNSURE:
-            return ()
-        ranked = sorted((p, name) for name, p in likely.items() if name)[::-1][:MOST]
+            return
         users = mentioned.users
-        found: list[Meaning] = []
-        for likelihood, name in ranked:
-            if found and likelihood < WORTH_OFFERING:
-                break
+        for name, likelihood in self._likely(mentioned.words).items():
             goes = name in self._to_people
-            if goes and (mentioned.strangers or len(users) > 1):
-                continue  # unknown whom to go to
-            user = next(iter(users)) if goes and users else None
-            found.append(Meaning(name, user, likelihood))
-        return tuple(found)
+            if name and not (goes and (mentioned.strangers or len(users) > 1)):
+                yield name, next(iter(users)) if goes and users else None, likelihood
 
     def _likely(self, words: Words) -> dict[str, float]:
         return self._model().probabilities(words)

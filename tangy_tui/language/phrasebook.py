@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
+from random import Random
 from typing import Literal
 
 from tangy_profiles.activity import Activity
@@ -18,12 +20,14 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.person import Person
 from tangy_profiles.state import EVERYBODY
+from tangy_tui.language.examples import spoken_examples, templates
 from tangy_tui.language.words import Words, bare, clean, spoken, words_of
 
 ARTICLES = frozenset(("a", "an", "the"))
 LINKS = ("to", "for", "with")
 """Words between a behaviour and its person."""
 USER = ("user",)
+SEED = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +66,7 @@ class Phrases:
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
         """Add the phrases, then their forms with people; the first entry of a phrase wins."""
+        self._activity = activity
         self._order = tuple(activity.behaviours)
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The questions about the behaviours, as they are spoken."""
@@ -97,6 +102,14 @@ class Phrases:
         self.sources = dict.fromkeys(self.pronunciations, "person")
         """The source of each pronunciation: "activity" or "person"."""
         self.sources |= dict.fromkeys(activity.pronunciations, "activity")
+
+    @cached_property
+    def sentences(self) -> tuple[str, ...]:
+        """Requests and talk with the activity's words and these people, as they are spoken."""
+        numbered = product(templates()["people"], self.numbers)
+        ways = [*map(spoken, (*numbered, *self.seats)), *map(" ".join, self.names)]
+        Random(SEED).shuffle(ways)
+        return tuple(spoken_examples(self._activity, ways))
 
     def all(self) -> Iterable[Phrase]:
         """Return the phrases in the order in which they were added."""
@@ -188,6 +201,18 @@ class Phrases:
         for word, listed in activity.pronunciations.items():
             said[word] = [*listed, *said[word]]
         return {word: tuple(dict.fromkeys(ways)) for word, ways in said.items()}
+
+
+def of_one_meaning(phrases: Iterable[Phrase], key: Callable[[Phrase], str]) -> dict[str, Phrase]:
+    """Return the phrases by a key, without keys of phrases with different meanings."""
+    found: dict[str, list[Phrase]] = defaultdict(list)
+    for phrase in phrases:
+        found[key(phrase)].append(phrase)
+    return {
+        form: same[0]
+        for form, same in found.items()
+        if form and len({(phrase.behaviour, phrase.user) for phrase in same}) == 1
+    }
 
 
 def name_phones(person: Person) -> dict[str, str]:

@@ -3,10 +3,11 @@
 In the usual mode each utterance is decoded twice: by an n-gram model of the phrases in which
 everyday words can occur anywhere, which gives the words; and by a grammar of the phrases with a
 garbage branch of any phones, which shows how well any phones explain the sound. The difference of
-the two scores separates spoken commands from words that merely fit best. A separate stop decoder
-(`stop_decoder`) runs first; if it is sure, its result is used at once. The paper's mode has only
-the n-gram model of the phrases. pocketsphinx holds the GIL, so this runs in a process of its own:
-see `worker`.
+the two scores separates spoken commands from words that merely fit best. Where the words are no
+whole phrase, a model of the ways to ask and of talk gives guesses at the sentence. A separate stop
+decoder (`stop_decoder`) runs first; if it is sure, its result is used at once. The paper's mode has
+only the n-gram model of the phrases. pocketsphinx holds the GIL, so this runs in a process of its
+own: see `worker`.
 """
 
 from __future__ import annotations
@@ -27,12 +28,19 @@ from tangy_tui.speech.language import (
     words_of,
 )
 from tangy_tui.speech.noise_reduction import cleared, surrounded
-from tangy_tui.speech.pocketsphinx_search import NO_PATH, add_model, best_path, make_search
+from tangy_tui.speech.pocketsphinx_search import (
+    NO_PATH,
+    add_model,
+    best_path,
+    likeliest,
+    make_search,
+)
 from tangy_tui.speech.stop_decoder import StopDecoder
 
 SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
 MODEL = "en-us/"
-AMONG_STOPS = 1_500  # everyday words of the stop decoder
+FEW = 1_500  # everyday words among sentences and stops
+AMONG_SENTENCES = 0.05  # their share
 UNKNOWN_MARGIN = -0.5  # the margin of most speech that is no command
 
 # Confidence of the paper's n-gram model: a logistic regression over two scores of the best path,
@@ -115,7 +123,8 @@ class TwoDecoders(_Streaming):
     def __init__(self, wanted: DecoderVocabulary) -> None:
         everyday = everyday_words(EVERYDAY)
         known = _pronunciations(
-            words_of((*wanted.phrases, *wanted.answers, *wanted.stops, *wanted.no_stops))
+            words_of((*wanted.phrases, *wanted.answers, *wanted.sentences))
+            | words_of((*wanted.stops, *wanted.no_stops))
             | everyday.keys(),
             wanted.pronunciations,
         )
@@ -125,8 +134,10 @@ class TwoDecoders(_Streaming):
         own = {w: known[w] for w in (*words_of(phrases), *words_of(answers))}
         open_words = {word: p for word, p in everyday.items() if word in known}
         share = weight / (1 + weight)
+        asked = [text for text in wanted.sentences if known.keys() >= set(text.split())]
+        said_words = (*open_words, *words_of(asked), *own)
         self._search = make_search(
-            dictionary({**{w: known[w] for w in open_words}, **own}), bestpath=True, active=1500
+            dictionary({word: known[word] for word in said_words}), bestpath=True, active=1500
         )
         self._grammar = make_search(dictionary(own, phones=True), bestpath=False, active=1000)
         for name, said in (("commands", phrases), ("answers", answers)):
@@ -134,7 +145,11 @@ class TwoDecoders(_Streaming):
                 add_model(self._search, name, open_model(said, open_words, share))
                 self._grammar.add_jsgf_string(name, grammar(said, weight))
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
-        few = dict(list(open_words.items())[:AMONG_STOPS])
+        few = dict(list(open_words.items())[:FEW])
+        self._guesses = bool(asked)
+        if asked:
+            sentences = open_model((*phrases, *asked), few, AMONG_SENTENCES)
+            add_model(self._search, "sentences", sentences)
         self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
         self._beside = ForkedWorker(self._by_words)
         self._beside_stops = ForkedWorker(self._stops.hear)
@@ -152,15 +167,19 @@ class TwoDecoders(_Streaming):
         if sure:
             return AcousticEvidence(stop, "", UNKNOWN_MARGIN, 1.0, seconds, stop)
         phrase, garbage, _ = best_path(self._grammar, pcm, expecting)
-        words, score = self._beside.answer()
+        words, score, guesses = self._beside.answer()
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or an unfinished phrase
-        return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop)
+        return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop, guesses)
 
-    def _by_words(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
-        words, score, _ = best_path(self._search, *asked)
-        return words, score
+    def _by_words(self, asked: tuple[bytes, Expecting]) -> tuple[str, float, tuple[str, ...]]:
+        pcm, expecting = asked
+        words, score, _ = best_path(self._search, pcm, expecting)
+        phrase = not words or expecting != "commands" or words in self._said[expecting]
+        if phrase or not self._guesses:
+            return words, score, ()
+        return words, score, likeliest(self._search, pcm, "sentences")
 
     def close(self) -> None:
         """End the child processes."""

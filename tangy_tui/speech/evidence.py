@@ -50,7 +50,7 @@ class DecoderVocabulary:
 
     `urgent` phrases end an utterance as soon as they are heard. `stops` are sentences that stop the
     robot, common ones repeated, `no_stops` similar sentences that do not, and `game` are the words
-    of the activity's title.
+    of the activity's title. `sentences` are requests and talk, of which it makes guesses.
     """
 
     phrases: tuple[str, ...]
@@ -61,6 +61,7 @@ class DecoderVocabulary:
     stops: tuple[str, ...] = ()
     no_stops: tuple[str, ...] = ()
     game: tuple[str, ...] = ()
+    sentences: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,8 @@ class AcousticEvidence:
     `words` are the likeliest words, including everyday words; `phrase` is the whole phrase found by
     the grammar, or empty; `margin` is log P(sound, words) - log P(sound, grammar or any phones) per
     frame; `confidence` is that of the paper's mode, else 1; `seconds` is the length. `stop` is the
-    sentence found by the stop decoder, or empty.
+    sentence found by the stop decoder, or empty. `guesses` are the likeliest sentences, best first;
+    none if a phrase was heard, or only words are known.
     """
 
     words: str = ""
@@ -79,3 +81,4 @@ class AcousticEvidence:
     confidence: float = 0.0
     seconds: float = 0.0
     stop: str = ""
+    guesses: tuple[str, ...] = ()

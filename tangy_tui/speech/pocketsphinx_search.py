@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,8 @@ from tangy_tui.speech.evidence import RATE
 SHIFT = 1024  # pocketsphinx keeps scores shifted right by ten bits
 FRAMES_A_SECOND = 100
 NOISES = ("<", "[", "+", "(")  # prefixes of silences and noises among the words of a path
+GUESSES = 20
+SEGMENTATIONS = 200  # paths to search for them; many have the same words at other times
 NO_PATH = -1e9  # score if no path is complete
 
 
@@ -61,11 +63,18 @@ def best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]
     return str(best.hypstr), _log(best.score) / frames, sum(words) / max(1, len(words))
 
 
-def next_best(decoder: Any, most: int) -> Iterator[str]:
-    """Yield the likeliest sentences of the last `best_path`, best first."""
-    for _, guess in zip(range(most), decoder.nbest() or (), strict=False):
-        if guess is not None:  # None if the search has no more
-            yield str(guess.hypstr)
+def likeliest(decoder: Any, pcm: bytes, search: str) -> tuple[str, ...]:
+    """Return up to `GUESSES` sentences that may have been said, the best path's first."""
+    words, _, _ = best_path(decoder, pcm, search)
+    if not words:
+        return ()
+    guesses = {words: None}
+    for path in islice(decoder.nbest() or (), SEGMENTATIONS):
+        if path is not None:  # None if the search has no more
+            guesses[str(path.hypstr)] = None
+        if len(guesses) == GUESSES:
+            break
+    return tuple(guesses)
 
 
 def _log(score: float) -> float:

@@ -11,12 +11,11 @@ import base64
 import os
 import sys
 from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from tangy_hw.worker_process import WorkerError, WorkerProcess
-from tangy_profiles.codec import encode
+from tangy_profiles.codec import decode, encode
 from tangy_profiles.errors import TangyError
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, DecoderVocabulary, Expecting
 
@@ -193,9 +192,7 @@ class Recogniser:
             if not answer.done():
                 await self._send({"id": id, "end": True})
             got = await self._decoded(answer)
-            evidence = AcousticEvidence(
-                **{field.name: got["heard"][field.name] for field in fields(AcousticEvidence)}
-            )
+            evidence = decode(AcousticEvidence, got["heard"])
             self.said, self.left = b"".join(said), b""
             if endpoint:
                 end = len(self.said) - max(0, sent - got["used"])

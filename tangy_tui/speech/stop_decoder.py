@@ -16,11 +16,9 @@ from typing import Any, NamedTuple
 from tangy_tui.language.stop_sentence import likelihood, prepare, stops
 from tangy_tui.speech.language import dictionary, open_model, words_of
 from tangy_tui.speech.noise_reduction import cleared
-from tangy_tui.speech.pocketsphinx_search import add_model, best_path, make_search, next_best
+from tangy_tui.speech.pocketsphinx_search import add_model, likeliest, make_search
 
 SHARE = 0.05  # of everyday words
-GUESSES = 20  # n-best sentences to judge
-SEGMENTATIONS = 200  # n-best paths to search for them
 BY_RULES = 0.33  # what the rules add to the mean likelihood of these sentences
 EACH_WORD = 0.088  # likelihood that a stop needs for each word of the best path
 FEWEST, MOST = 3, 8  # words that count
@@ -77,16 +75,11 @@ class StopDecoder:
         """Return the sentence of an utterance (16 kHz mono s16le) that stops the robot."""
         if self._search is None:
             return HeardStop()
-        words, _, _ = best_path(self._search, cleared(pcm), "all")
-        if not words:
+        guesses = likeliest(self._search, cleared(pcm), "all")
+        if not guesses:
             return HeardStop()
-        guesses = {words}
-        for guess in next_best(self._search, SEGMENTATIONS):
-            guesses.add(guess)
-            if len(guesses) == GUESSES:
-                break
         likely = sum(likelihood(guess, self._game) for guess in guesses) / len(guesses)
-        certain = stops(words, self._game)
+        certain = stops(words := guesses[0], self._game)
         needed = EACH_WORD * min(max(len(words.split()), FEWEST), MOST)
         return HeardStop(words, certain) if likely + certain * BY_RULES >= needed else HeardStop()
 

@@ -20,7 +20,7 @@ from tangy_tui.language.mentions import Mentions
 from tangy_tui.language.words import words_of
 from tangy_tui.learning.verification import Say
 from tangy_tui.speech.evidence import USUAL
-from tangy_tui.speech.understanding import clearly_heard, understand
+from tangy_tui.speech.understanding import clearly_heard, understand, wanted
 from tests.support.changed import changed_trivia
 from tests.support.understood import behaviour_of
 
@@ -169,6 +169,30 @@ def test_every_mention_of_a_person_is_one_token() -> None:
         assert found.users == {"user2"}
     assert mentions.find(words_of("look at user 9")).strangers
     assert mentions.find(words_of("help the person in")).users == set()
+
+
+def test_of_several_guesses_the_likeliest_meaning_on_the_weighted_average_counts() -> None:
+    guesses = ("the kettle is on the table", "let us have another joke", "let us tell another joke")
+    alone = BOOK.paraphrased(guesses[1])
+    found = BOOK.paraphrased(*guesses)
+    assert found[0].behaviour == alone[0].behaviour == "joke"
+    assert found[0].confidence < alone[0].confidence
+    assert BOOK.paraphrased(guesses[0], "the weather is nice today", "my back hurts") == ()
+
+
+def test_the_person_whom_most_guesses_name_is_meant() -> None:
+    found = BOOK.paraphrased("please check on rosa", "go and see user one", "see what rosa wants")
+    assert found[0].behaviour == "navigate to user"
+    assert found[0].arguments == {"user": "user4"}
+
+
+def test_requests_are_listened_for_with_the_people_who_are_there() -> None:
+    sentences = BOOK.table.sentences
+    assert "tell a funny story please" in sentences
+    assert any("rosa" in sentence.split() for sentence in sentences)
+    assert any("user two" in sentence for sentence in sentences)
+    assert not [sentence for sentence in sentences if SOMEBODY in sentence]
+    assert set(sentences) <= set(wanted(BOOK, USUAL).sentences)
 
 
 def test_wordings_are_training_data_but_no_phrases() -> None:

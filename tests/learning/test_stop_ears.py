@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import ClassVar
 
 import pytest
@@ -17,7 +18,7 @@ from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import decoder as speech_decoder
-from tangy_tui.speech import stop_decoder
+from tangy_tui.speech import pocketsphinx_search, stop_decoder
 from tangy_tui.speech.evidence import USUAL, AcousticEvidence, DecoderVocabulary
 from tangy_tui.speech.stop_decoder import HeardStop, StopDecoder
 from tangy_tui.speech.understanding import answer, commanded, replied, understand, wanted
@@ -120,13 +121,14 @@ class GuessingSearch:
     """A search with given hypotheses, best first, for any sound."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, *guesses: str) -> None:
-        for name, does in (
-            ("make_search", lambda *_, **__: self),
-            ("add_model", lambda *_: None),
-            ("best_path", lambda *_: (guesses[0], -2.0, 0.0)),
-            ("next_best", lambda *_: iter(guesses)),
-        ):
-            monkeypatch.setattr(stop_decoder, name, does)
+        self._guesses = guesses
+        monkeypatch.setattr(stop_decoder, "make_search", lambda *_, **__: self)
+        monkeypatch.setattr(stop_decoder, "add_model", lambda *_: None)
+        monkeypatch.setattr(pocketsphinx_search, "best_path", lambda *_: (guesses[0], -2.0, 0.0))
+
+    def nbest(self) -> Iterator[SimpleNamespace | None]:
+        yield from (SimpleNamespace(hypstr=guess) for guess in self._guesses)
+        yield None
 
     def hear(self) -> HeardStop:
         known = {"stop": ("S T AA P",), "the": ("DH AH",)}
@@ -180,7 +182,7 @@ class TwoAnswers:
 
     def answer(self) -> object:
         self.asked.append(self.name)
-        return self.found if self.name == "hear" else (self.words, -2.0)
+        return self.found if self.name == "hear" else (self.words, -2.0, ())
 
     def close(self) -> None:
         """Nothing was started."""

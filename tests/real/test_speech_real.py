@@ -26,7 +26,9 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.codec import encode
 from tangy_profiles.person import Person, load_people
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.intents import Intents
 from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.speech.decoder import make_decoder
 from tangy_tui.speech.evidence import (
     LONGEST,
     USUAL,
@@ -74,6 +76,11 @@ UNKNOWN = [
     ("drive back to the front", "rms", "navigate to front"),
     ("go back to front please", "kal16", "navigate to front"),
     ("let us hear a joke", "rms", "joke"),
+]
+FREE = [
+    ("motivate them a little", "awb", "encourage"),
+    ("get her to move that card in a bit", "awb", "move card closer"),
+    ("tell him to slide the card over to you", "kal16", "move card closer"),
 ]
 OTHER = [
     ("the soup was too salty", "slt"),
@@ -161,6 +168,21 @@ class TestVoices:
         taken = [(first, name) for tier, first, name in found if tier in ("sure", "unsure")]
         assert all(first == name for first, name in taken), found
         assert len(taken) >= len(UNKNOWN) - 1, found  # the bench says how many in the long run
+
+    @pytest.mark.slow
+    def test_free_wordings_are_understood_from_guesses_at_the_sentence(
+        self, voices: Voices
+    ) -> None:
+        book = Phrasebook(load_activity("bingo"), load_people(4), Intents().model)
+        decoder = make_decoder(wanted(book, USUAL))
+        for said, voice, meant in FREE:
+            evidence = decoder.decode(voices.say(said, voice), "commands")
+            found = understand(evidence, book, USUAL)
+            assert isinstance(found, Say) and found.commands, said
+            assert found.commands[0].behaviour == meant
+            assert evidence.words not in evidence.guesses  # the words alone were misheard
+        assert not decoder.decode(voices.say(*KNOWN[0][:2]), "commands").guesses
+        decoder.close()
 
     @pytest.mark.slow
     def test_other_speech_is_no_command(self, studio: Studio, voices: Voices) -> None:
