@@ -27,6 +27,12 @@ def report_in(place: object) -> str:
     return f"The report is in {place}."
 
 
+PLAIN_NEEDS_A_VERB = (
+    "--plain needs to know what you want to do: `tangy teach --plain` teaches, "
+    "`tangy play --plain` plays a simulated game, `tangy live --plain` a live one."
+)
+
+
 def games_to_read(folder: object) -> str:
     """Tell where the log of games with a miss, a false alarm, or an early end is."""
     return (

@@ -9,10 +9,11 @@ from typing import Annotated, Any
 import typer
 
 from tangy_profiles.defaults import USUAL_ROBOT
+from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest
 from tangy_tui import __version__
 from tangy_tui.app.user_settings import LINK_SPEEDS, LINK_VARIABLE
-from tangy_tui.text.command_line import no_screens
+from tangy_tui.text.command_line import PLAIN_NEEDS_A_VERB, no_screens
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.verbs.catalogue import LazyVerbs
 from tangy_tui.verbs.common import Ascii, Data
@@ -39,6 +40,7 @@ def program(
     link: Annotated[
         str, typer.Option("--link", help="Speed of the link to your terminal: auto, slow, fast.")
     ] = "",
+    plain_lines: Annotated[bool, typer.Option("--plain", hidden=True)] = False,
 ) -> None:
     """Open the program, where no verb is given; options before a verb are the verb's."""
     if version:
@@ -54,6 +56,10 @@ def program(
     if robot is not None:
         given["robot"] = robot
     called = context.invoked_subcommand
+    if plain_lines:
+        if called is None:
+            raise TangyError(PLAIN_NEEDS_A_VERB)
+        given["plain_lines"] = True
     if called is not None:
         verb = context.command.get_command(context, called)  # type: ignore[attr-defined]
         context.default_map = {called: _defaults(verb, given)}

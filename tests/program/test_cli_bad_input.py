@@ -18,6 +18,7 @@ Tangy = Callable[..., CompletedProcess[str]]
     ("arguments", "said"),
     [
         (("dance",), "dance"),
+        (("--plain",), "`tangy teach --plain` teaches"),
         (("play", "--gmaes", "3"), "--gmaes"),
         (("play", "--games", "0"), "--games"),
         (("play", "--games", "many"), "--games"),
@@ -53,7 +54,7 @@ def test_bad_input_is_status_two_and_one_sentence(
     with Store.open(taught, write=False) as store:
         before = [event.uuid for event in store.events()]
     filled = [a.replace("{tmp}", str(tmp_path)) for a in arguments]
-    data = () if arguments == ("dance",) else ("--data", taught)
+    data = () if len(arguments) == 1 else ("--data", taught)
     done = tangy(*filled, *data)
     assert done.returncode == 2
     assert done.stdout == ""
