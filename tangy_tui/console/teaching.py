@@ -52,6 +52,7 @@ from tangy_tui.text.coach import SAYABLE, sayable_now
 from tangy_tui.text.hearing import hearing_words
 from tangy_tui.text.questions import ANSWER_HELP, NO_QUESTION, answer_help
 from tangy_tui.text.refusals import WHICH
+from tangy_tui.text.remarks import which_answer
 from tangy_tui.text.teaching import teaching_lines
 from tangy_tui.text.teaching_commands import (
     GAME_OVER,
@@ -270,7 +271,9 @@ class TeachingLines:
             return answer
         if word is None and (answer is None or text.isdecimal()):
             return Say(text)
-        if word is None:
+        if word is None and remark is not None:
+            self._write_all(which_answer(remark, self._teaching.activity))
+        elif word is None:
             self._write(NO_QUESTION)
         elif isinstance(word, str):
             self._write_all(self._inquiries.lines(word))

@@ -78,7 +78,8 @@ def because_words(decision: Decision) -> str:
     if decision.whatever and not decision.seen:
         return f"by a rule: whatever {listed(decision.whatever, 'or')}"
     if decision.behaviour in decision.right:
-        return "as a teacher said"
+        shown = shown_here(decision.seen, share=1.0) if decision.seen else ""
+        return f"{shown}, and called right" if shown else "as a teacher said"
     return shown_here(decision.seen, decision.share)
 
 

@@ -140,7 +140,7 @@ def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -
 
 
 SKIP = "Play the rest of the game at once?"
-SKIP_DETAIL = "You will see how it ended, and what was learnt of the people."
+SKIP_DETAIL = "Then you see the last step, and what Tangy has learnt of the people."
 ANOTHER = "Play another game?"
 SEEN = "Have you seen this fault?"
 LEAVE = "Leave in the middle of the game?"

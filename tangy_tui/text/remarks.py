@@ -25,6 +25,7 @@ Name = Callable[[str], str]
 
 ANSWER_BY_LINE = "Type a number, or just go on: you can decide later."
 OR_NO = "Type 1 or no, or just go on."
+WHICH_ANSWER = "Yes could mean several answers here. Type a number, or no to decide later:"
 NUMBER_OR_ESC = "Press the number of an answer, or Esc."
 SAY_A_NUMBER = "Please say the number of an answer, or no."
 LATER = "decide later"
@@ -116,6 +117,12 @@ def remark_lines(remark: Remark, activity: Activity, name: Name, game: str = "")
         *(f"     {number}  {words}" for number, words in numbered),
         f"   {OR_NO if isinstance(remark, NewWording) else ANSWER_BY_LINE}",
     ]
+
+
+def which_answer(remark: Remark, activity: Activity) -> list[str]:
+    """List the answers to a remark, after a yes that could mean several of them."""
+    numbered = enumerate(answer_words(remark, activity), 1)
+    return [WHICH_ANSWER, *(f"     {number}  {words}" for number, words in numbered)]
 
 
 def settled_words(settled: Settled, activity: Activity) -> str:

@@ -125,9 +125,10 @@ def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
             return lines + [
                 f"  {number} instead: {other}" for number, other in enumerate(others, 1)
             ]
-        case Offered(heard, _, _, questions):
+        case Offered(heard, confidence, _, questions):
+            told = "You typed" if confidence >= 1 else "I heard"
             return [
-                f"I heard {plain(heard)!r}. Did you mean one of these? Type its number, or N.",
+                f"{told} {plain(heard)!r}. Did you mean one of these? Type its number, or N.",
                 *(f"  {number}  {question}" for number, question in enumerate(questions, 1)),
             ]
         case NotUnderstood(heard, suggestions):

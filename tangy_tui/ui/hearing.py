@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 from tangy_profiles.errors import TangyError
 from tangy_tui.text.hearing import NOTHING_ASKED, hearing_words
 from tangy_tui.text.keys import with_keys
+from tangy_tui.text.questions import SAID_TOO_EARLY
 from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import keymap_of
@@ -111,7 +112,7 @@ class Hearing:
     @property
     def expects(self) -> str:
         """What alone is accepted now; "": commands."""
-        if self._free:
+        if self._takes:
             return ""
         answers = self.ears.answers and self._question is not None
         return ANSWERS if answers else STOP if self.ears.live else ""
@@ -174,7 +175,7 @@ class Hearing:
         """Update whether the listener takes commands, and deliver the queued ones."""
         choices = () if self._question is None else self._question.choices
         if self.ears.live:
-            self.ears.asking(not self._free, choices)
+            self.ears.asking(not self._takes, choices)
         else:  # a recording is read on demand
             self.ears.asking(self.ears.answers and self._question is not None, choices)
         while self._kept and self._free:
@@ -247,6 +248,8 @@ class Hearing:
                     self._steer(text, sure)
             case Say() if self._listeners and self.on:
                 self._kept.append(heard)
+                if self._put_off is not None:
+                    self._put_off.answer("later")
                 self.look()
 
     def _answer(self, reply: Reply) -> None:
@@ -254,7 +257,10 @@ class Hearing:
         question = self._question
         if question is None and self._free:
             self.tell(NOTHING_ASKED)
-        if question is None or self._about not in (None, question):
+        if question is None:
+            return
+        if self._about is not question:
+            self.tell(SAID_TOO_EARLY, "warn")
             return
         wrong = question.hear(yes=reply.yes, alternative=reply.alternative)
         said = f"Heard: {reply.alternative or ('yes' if reply.yes else 'no')}."
@@ -262,7 +268,7 @@ class Hearing:
 
     async def _wanted(self) -> None:
         """Wait until speech is wanted: a recording is read on demand."""
-        while not self.ears.live and not self._free:
+        while not self.ears.live and not self._takes:
             question = self._question
             if self.ears.answers and question is not None and question.painted:
                 self.look()
@@ -272,6 +278,21 @@ class Hearing:
     @property
     def _free(self) -> bool:
         return self.on and bool(self._listeners) and self._listeners[-1].listens
+
+    @property
+    def _takes(self) -> bool:
+        """Whether a spoken command is taken now."""
+        return self._free or self._put_off is not None
+
+    @property
+    def _put_off(self) -> RemarkDialog | None:
+        """The open remark that the next command puts off: it cannot be answered by voice."""
+        question = self._question
+        if self.ears.answers or not (self.on and self._listeners):
+            return None
+        from tangy_tui.ui.dialogs.remark import RemarkDialog
+
+        return question if isinstance(question, RemarkDialog) else None
 
     @property
     def _question(self) -> SpokenQuestion | None:

@@ -100,7 +100,16 @@ class FakeEars:
                 self.answers if isinstance(one, Reply) else True
             )
             if not self.live or wanted:
+                if isinstance(one, Reply):
+                    self._begin_to_speak()
                 self._coming.put_nowait(one)
+
+    def _begin_to_speak(self) -> None:
+        """Pass through the state in which an answer begins, unless a test did so before."""
+        before = self.state
+        if before not in ("speaking", "thinking"):
+            self.be("speaking" if self.live else "thinking")
+            self.be(before)
 
     def say(self, words: str, *, sure: bool = True) -> Say:
         """Make a command of words, as the decoder understands them."""

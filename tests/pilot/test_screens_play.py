@@ -25,6 +25,7 @@ from tangy_tui.ui.screens.policy import PolicyScreen, policy_rows
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
+from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
@@ -124,6 +125,7 @@ async def test_skipping_plays_the_game_to_its_end(
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
         assert screen.query_one(StatusLine).status.stage == "the game is over"
         assert workspace.store.last("game ended") is not None
+        assert screen.query_one(Posteriors).display  # what was learnt of the people
         await pilot.press("g", "y")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.game == 2

@@ -391,6 +391,47 @@ async def test_a_remark_on_a_spoken_step_is_answered_by_voice(
 
 
 @pytest.mark.slow
+async def test_a_spoken_command_puts_off_a_remark_that_no_voice_can_answer(
+    run: Run, workspace: Workspace
+) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=teaching(workspace, ears)) as pilot:
+        ears.hear(Say("let it all begin", 0.2, ()))
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, RemarkDialog)
+        assert not ears.asks  # commands are heard
+        ears.hear(ears.say("call number"))
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert pilot.app.screen.behaviour == "call number"
+        assert own_phrases(workspace.store, workspace.activity.name, "ann") == {}
+
+
+@pytest.mark.slow
+async def test_an_answer_begun_before_its_question_does_not_count(
+    run: Run, workspace: Workspace
+) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(workspace, ears)) as pilot:
+        ears.be("speaking")  # when there is no question
+        await pilot.press(*"greet everyone", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog) and steps(workspace) == []
+        assert "before the question was on the screen" in screen_text(pilot.app)
+        ears.be("listening")
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert steps(workspace) == ["greeting"]
+
+
+@pytest.mark.slow
 async def test_speech_during_a_question_is_handled_next(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True)
     async with run(app=teaching(workspace, ears)) as pilot:

@@ -119,3 +119,20 @@ async def test_a_later_number_does_not_answer_a_deferred_remark(
         await pilot.press("1", "enter")
         await pilot.pause()
         assert not read_library(workspace.store, "bingo").resolutions
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("key", ["f2", "ctrl+z"])
+async def test_undo_takes_the_step_of_a_remark_back(
+    run: Run, workspace: Workspace, key: str
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        screen = next(one for one in pilot.app.screen_stack if isinstance(one, TeachScreen))
+        assert len(screen.teaching.demonstration.steps) == 2
+        await pilot.press(key)
+        await pilot.pause()
+        await pilot.pause()
+        assert pilot.app.screen is screen
+        assert len(screen.teaching.demonstration.steps) == 1
+        assert not read_library(workspace.store, "bingo").resolutions

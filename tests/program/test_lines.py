@@ -27,6 +27,8 @@ from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.text.coach import SAYABLE
 from tangy_tui.text.games import belief_lines, game_lines
+from tangy_tui.text.questions import NO_QUESTION
+from tangy_tui.text.remarks import WHICH_ANSWER
 from tangy_tui.text.teaching_commands import command_line
 from tests.support.staff_lines import play_by_turns
 
@@ -108,6 +110,14 @@ def test_a_mention_of_stopping_is_an_ordinary_command(workspace: Workspace, word
 @pytest.mark.parametrize("words", ["again", "Again", "again from step", "again N"])
 def test_again_needs_a_step(workspace: Workspace, words: str) -> None:
     assert told(workspace, words)[-1] == "Say which step: `again 5` goes back to before step 5."
+
+
+def test_a_yes_to_a_remark_with_several_answers_lists_them(workspace: Workspace) -> None:
+    told(workspace, "greet everyone", "y", "call number", "y", teacher="Bea")
+    said = told(workspace, "greet everyone", "y", "tell a joke", "y", "yes")
+    at = said.index(WHICH_ANSWER)
+    assert said[at + 1].startswith("     1  ") and said[at + 4].startswith("     4  ")
+    assert NO_QUESTION not in said
 
 
 def test_n_returns_the_words(workspace: Workspace) -> None:

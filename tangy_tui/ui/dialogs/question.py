@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 MOST_ALTERNATIVES = 3
 LONGEST_HEARD = 100  # characters: two lines
 LONGEST_TOLD = 150  # characters: three lines
-HEARD = "heard"
+HEARD, TYPED = "heard", "typed"
 CONFIDENCE = "confidence"
 
 
@@ -193,7 +193,8 @@ class VerifyingDialog(Dialog[Answer]):
     def _grounds(self) -> Parts:
         grounds: list[Parts] = []
         if self._heard:
-            grounds.append([(f"{HEARD} ", "$ink-dim"), self._heard])
+            told = TYPED if self._confidence is None else HEARD
+            grounds.append([(f"{told} ", "$ink-dim"), self._heard])
         if self._confidence is not None:
             grounds.append([(f"{CONFIDENCE} ", "$ink-dim"), f"{self._confidence:.2f}"])
         parts: Parts = []
@@ -324,7 +325,7 @@ def dialog_for(question: Asked | Offered, aloud: str = "") -> VerifyingDialog:
     if isinstance(question, Offered):
         return ChoicesDialog(
             heard=question.heard,
-            confidence=question.confidence,
+            confidence=None if question.confidence >= 1 else question.confidence,
             choices=question.questions,
             aloud=aloud,
         )

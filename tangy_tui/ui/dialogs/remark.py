@@ -27,25 +27,27 @@ from tangy_tui.text.remarks import (
 )
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 GAP = 3
 """Cells between two answers."""
-PADDING = 2
-"""Cells at the sides of the dialog."""
+SIDE = 1
+"""Cells at each side of the dialog."""
 
 
 class RemarkDialog(Dialog[RemarkAnswer]):
     """Tells what may have been overlooked; a number answers it, esc postpones it."""
 
-    DEFAULT_CSS = """
-    RemarkDialog { align: left bottom; background: transparent; }
-    RemarkDialog > .box {
-        width: 100%; max-width: 100%; border: none; padding: 0 1; background: $surface;
-    }
+    DEFAULT_CSS = f"""
+    RemarkDialog {{ align: left bottom; background: transparent; }}
+    RemarkDialog > .box {{
+        width: 100%; max-width: 100%; border: none; padding: 0 {SIDE}; background: $surface;
+    }}
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1", "nothing", "The answer of this number", key_display="1-4"),
+        *bind("undo"),
         Binding("escape", "nothing", "Decide later"),
     ]
     HELP = (
@@ -95,6 +97,8 @@ class RemarkDialog(Dialog[RemarkAnswer]):
 
     def on_key(self, event: events.Key) -> None:
         """Answer with a number or esc, if the remark was visible before."""
+        if keymap_of(self.app).action(event.key) == "undo":
+            return  # it means the last step, whether or not the remark was seen
         known = event.key == "escape" or event.key in self._answers
         if not self._keys.take(event):
             if known:
@@ -105,6 +109,10 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             self.answer(self._answers[event.key][0])
         elif event.is_printable and event.key != "question_mark":
             self._tell(NUMBER_OR_ESC)
+
+    def action_undo(self) -> None:
+        """Take the step back that the remark is about."""
+        self.answer("undo")
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` handles the keys, to check each of them."""
@@ -151,7 +159,7 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             cells = len(key) + 1 + cell_len(words)
             fits = GAP + cells <= left
             parts += [" " * GAP if fits else "\n", (key, "$primary bold"), f" {words}"]
-            left = (left - GAP if fits else self.app.size.width - PADDING) - cells
+            left = (left - GAP if fits else self.app.size.width - 2 * SIDE) - cells
         if self._say:
             kinds = tuple(answer for answer, _ in self._answers.values())
             parts += ["\n", (f"{self._say} {sayable_words(kinds)}.", "$ink-dim")]

@@ -21,21 +21,10 @@ DIAL: dict[Autonomy, str] = {
 
 HELP = (
     "A game among people. The room shows where Tangy believes it is ([• •]), the way it means to "
-    "go (·), where else it may be (∴) and what it sees in its way that the plan of the room has "
-    "not (*). {stop} stops the robot at once, wherever you are; {pause} lets it go on, and pauses "
-    "the game after what it is doing. 7 shows its devices, what its cameras see and the last card "
-    "that it read; {why} tells why.\n"
-    "{autonomy} turns the dial of how much Tangy does by itself: all of it, or it asks you before "
-    "it does what it is less sure of, or before everything. {take_over} takes over: you say what "
-    "it does next, and Esc lets it go on by itself after all. {drive} drives it with the arrow "
-    "keys. {call_again} calls the last number again, {undo} takes it back, {ask_for} asks for "
-    "help for a person who cannot, {whose_card} says whose card is whose; in an activity without "
-    "cards {tell} tells Tangy what a person answers or does, and how a card is if the robot has no "
-    "camera. {faster} and {slower} "
-    "change the pace, {claim} checks whether a card wins, {presence} notes who has come or left, "
-    "{command} takes all of these and more in words, and {inside} shows how Tangy decides. "
-    "{inject} simulates a fault, on the bench. With a microphone, saying stop or stop the robot "
-    "stops it at once, and with push-to-talk {talk} lets you talk. Esc ends the game."
+    "go (·), where else it may be (∴), and what it sees in its way that the plan of the room has "
+    "not (*). {stop} stops the robot at once, wherever you are, and {pause} lets it go on. Saying "
+    "stop the robot does the same, if there is a microphone. What cannot be undone asks first. "
+    "{command} takes commands in words, also those that have no key."
 )
 
 BINDINGS: list[BindingType] = [

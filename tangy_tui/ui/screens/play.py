@@ -280,6 +280,8 @@ class PlayScreen(PlayStaff):
             if rest:
                 self._faults.done()
                 self._tell(rest)
+        if self.skipping:
+            self.action_panel("posteriors")  # as the question promised
         self.skipping = False
 
     async def _until_going(self) -> None:
