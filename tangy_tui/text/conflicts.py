@@ -54,7 +54,7 @@ def keys_words(then: str) -> str:
     return f"Press enter to {then}, esc to go back, {{undo}} to take the last answer back."
 
 
-WHICH_IS_RIGHT = "Which is right? Type a number, b for all of them, or Enter to leave it open: "
+WHICH_IS_RIGHT = "Which is right? Type a number, b for all of them, or Enter to leave it open."
 LEFT_OPEN = "Left open. Tangy will ask when it happens."
 SETTLE_ONE = "Settle one with `tangy demonstrations resolve 1 --right BEHAVIOUR`, or --both."
 ALL_AGREE = "The demonstrations agree in every situation."

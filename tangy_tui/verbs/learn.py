@@ -9,10 +9,17 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.text.conflicts import LEFT_OPEN, WHICH_IS_RIGHT, how_to_settle
 from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
 from tangy_tui.text.policies import notice_words
-from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
+from tangy_tui.verbs.common import (
+    REGISTERED,
+    ActivityName,
+    Data,
+    Json,
+    Seed,
+    print_json,
+    print_line,
+)
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
@@ -45,6 +52,8 @@ def learn(
     """
     from dataclasses import replace
 
+    from tangy_tui.console.conflicts import settle_conflicts
+    from tangy_tui.console.inputs import line_reader
     from tangy_tui.learning.forest_cache import ForestCache
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import (
@@ -64,7 +73,7 @@ def learn(
     check_name(name)
     with open_workspace(data, activity, REGISTERED) as workspace:
         if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
-            _settle_conflicts(workspace)
+            settle_conflicts(workspace, line_reader(None), print_line)
         library = read_library(workspace.store, workspace.activity.name)
         shown = library.demonstrations
         if teacher is not None:
@@ -134,40 +143,6 @@ def policy(
 
 
 # ------------------------------------------------------------------------------------ learning
-
-
-def _settle_conflicts(workspace: Workspace) -> None:
-    """Ask the user at the terminal to settle each conflict before learning."""
-    from tangy_tui.learning.editing import Editor
-    from tangy_tui.learning.library import read_library
-    from tangy_tui.text.situations import conflict_lines
-
-    library = read_library(workspace.store, workspace.activity.name)
-    editor = Editor(workspace.store, workspace.activity)
-    for conflict in library.conflicts:
-        for line in conflict_lines(workspace.activity, library, conflict):
-            print(line)
-        answers = list(conflict.answers)
-        while True:
-            try:
-                said = input(WHICH_IS_RIGHT)
-            except EOFError:
-                print()
-                return
-            word = " ".join(said.split()).lower()
-            if word == "":
-                print(LEFT_OPEN)
-                break
-            if word == "b":
-                editor.resolve(conflict, *answers)
-                break
-            if word.isdecimal() and 1 <= int(word) <= len(answers):
-                editor.resolve(conflict, answers[int(word) - 1])
-                break
-            if word in answers:
-                editor.resolve(conflict, word)
-                break
-            print(how_to_settle(len(answers)))
 
 
 def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]:

@@ -175,9 +175,11 @@ def _teach_by_lines(
     }
     who = None if teaching.teacher == workspace.teacher else teaching.teacher
     write: Callable[[str], None] = (lambda _: None) if as_json else common.print_line
+    read = line_reader(script)
+    asks = is_typed(script) and not (ears is not None and ears.live)  # else lines are read beside
     lines = TeachingLines(
         teaching,
-        line_reader(script),
+        read,
         write,
         ears,
         scripted=script is not None,
@@ -188,7 +190,7 @@ def _teach_by_lines(
         yes=TypedYes(terminal=is_typed(script), setting=workspace.settings.question),
         rename=partial(change_name, folder),
         after=AfterTeaching(
-            learn=lambda: _learn(workspace),
+            learn=lambda: _learn(workspace, read if asks else None),
             check=lambda: need_policy(workspace.store, workspace.activity),
         ),
         tour=tour,
@@ -200,12 +202,18 @@ def _teach_by_lines(
         _play(workspace, teaching.teacher)
 
 
-def _learn(workspace: Workspace) -> list[str]:
-    """Learn from the finished demonstrations, and describe the result."""
+def _learn(workspace: Workspace, read: Callable[[], str | None] | None) -> list[str]:
+    """Learn from the finished demonstrations, and describe the result.
+
+    If there is a reader of lines, the teacher is first asked about each conflict.
+    """
     from tangy_tui.app.training import learn
+    from tangy_tui.console.conflicts import settle_conflicts
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.learnt import NOT_SHOWN, learnt_lines
 
+    if read is not None:
+        settle_conflicts(workspace, read, common.print_line)
     policy = learn(workspace)
     library = read_library(workspace.store, workspace.activity.name)
     steps = sum(len(shown.steps) for shown in library.finished)
