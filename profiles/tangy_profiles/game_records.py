@@ -120,7 +120,8 @@ class GameChange(EventRecord):
 
     A call (`number`) was taken back; staff chose the next `patterns`; a winner (`person`) waits for
     the others, the game continues with the next pattern, or is won; a card was claimed to win;
-    `person` left or came, joined a resumed game, or gets an unrequested visit; some calls
+    `person` left or came, joined the game at a `place` (from 0; None: after the others), or gets
+    an unrequested visit; some calls
     (`number`) come before requests; all numbers were called, so each person gets a
     visit; after these visits nobody has won, or nobody else after `number` patterns; staff allowed
     several winners of one call, or one; turned visits on or off; or chose another pace (`seconds`
@@ -134,6 +135,7 @@ class GameChange(EventRecord):
     number: Sparse[Count] = 0
     patterns: Sparse[tuple[str, ...]] = ()
     seconds: Sparse[float] = 0.0
+    place: Sparse[Count | None] = None
     by: Sparse[str] = ""
 
 

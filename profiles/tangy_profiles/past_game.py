@@ -119,24 +119,27 @@ class PastGame:
         """The world in which it was played."""
         return self.beginning.world or SIMULATED
 
-    def joined_by(self, people: Sequence[str], unread: str) -> PastGame:
-        """Return the game with people more, who have not asked for anything and have no card.
+    def joined_by(self, person: str, unread: str, place: int | None = None) -> PastGame:
+        """Return the game with one person more, who has not asked for anything and has no card.
 
         Args:
-            people: their ids.
+            person: the id.
             unread: the state of a card that was not read.
+            place: the person's place from 0; None: after the others.
         """
-        more = tuple(person for person in people if person not in self.beginning.people)
-        if not more:
+        there = self.beginning.people
+        if person in there:
             return self
+        at = len(there) if place is None else place
+        new = UserState(person, unread, "ANR")
 
         def among(state: ActivityState | None) -> ActivityState | None:
-            known = {user.id for user in state.users} if state is not None else set()
-            new = tuple(UserState(one, unread, "ANR") for one in more if one not in known)
-            return None if state is None else state._replace(users=(*state.users, *new))
+            if state is None or any(user.id == person for user in state.users):
+                return state
+            return state._replace(users=(*state.users[:at], new, *state.users[at:]))
 
         steps = tuple(replace(step, after=among(step.after)) for step in self.steps)
-        beginning = replace(self.beginning, people=(*self.beginning.people, *more))
+        beginning = replace(self.beginning, people=(*there[:at], person, *there[at:]))
         return replace(self, beginning=beginning, steps=steps)
 
     @property

@@ -109,6 +109,16 @@ class Room:
         ends = list(accumulate(taken))
         return tuple(range(end - of, end) for end, of in zip(ends, taken, strict=True))
 
+    def next_place(self, count: int) -> int:
+        """Return the place (from 0) of one more person than `count`, who leave nobody's table.
+
+        It is the last place at the table that gets a person more.
+        """
+        now, then = self.at_tables(count), self.at_tables(count + 1)
+        grows = (after.stop - 1 for before, after in zip(now, then, strict=True)
+                 if len(after) > len(before))  # fmt: skip
+        return next(grows, count)
+
     @property
     def _seats_at_tables(self) -> tuple[tuple[Point, ...], ...]:
         """The room's own seats at each of its tables, from the left."""

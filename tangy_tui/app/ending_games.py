@@ -1,18 +1,21 @@
-"""The ways in which staff end a game: give it up, abort it, or leave it."""
+"""The ways in which staff end a game, or interrupt it for a new person."""
 
 from __future__ import annotations
 
 import threading
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
+from tangy_tui.app.game_commands import TAKEN_OVER, Joins, StaffNote
 from tangy_tui.app.robot_controls import ENDED, RobotControls
 from tangy_tui.monitoring.supervision import Event, Supervision
+
+if TYPE_CHECKING:
+    from tangy_tui.app.joining import Admission
 
 LEAVES_SECONDS = 1.0  # in which the current behaviour is aborted
 
@@ -23,7 +26,22 @@ class EndingGames:
     supervision: Supervision
     robot: RobotControls
     stopped: bool
+    going: bool
     _turn: threading.RLock
+
+    joined = False
+    """Whether the game was interrupted because a person joined, and is to be resumed with them."""
+    goes_on = False
+    """Whether a resumed game continues at once, rather than when staff say so.
+
+    When a person has joined: whether the game was going.
+    """
+    admission: Admission | None = None
+    """Adds people to the participants; None: nobody can join."""
+
+    def refusal(self, *, asking: bool = True) -> StaffNote | None:
+        """Return what staff have to do first, None if nothing."""
+        raise NotImplementedError
 
     def note(self, did: StaffActionKind, *, by: str = "", **what: Any) -> None:
         """Log what staff did (see `Supervision.note`)."""
@@ -47,6 +65,19 @@ class EndingGames:
         asked = game.question is not None and game.question.fault != TAKEN_OVER
         events = game.give_up() if asked or game.halted is not None else game.leave()
         return [StaffNote("ended"), *events]
+
+    def _let_join(self, command: Joins) -> list[Result]:
+        """Send the robot to the front, let a person in, and interrupt the game."""
+        if self.admission is None:
+            return [StaffNote("nobody joins")]
+        if refused := self.refusal() or self.admission.refusal(command):
+            return [refused]
+        if not self.robot.go_to_front():
+            return [StaffNote("not at front")]
+        joins = self.admission.admit(command)
+        self.supervision.interrupt()
+        self.joined, self.goes_on, self.going = True, self.going, True
+        return [joins]
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
         """Stop the robot, wait up to `patience` s for it, and log that the game was left."""

@@ -139,6 +139,14 @@ class GoesAway:
 
 
 @dataclass(frozen=True, slots=True)
+class Joins:
+    """Let a new person take part, by name; a guest only today."""
+
+    name: str
+    guest: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class AskFor:
     """Ask for help on behalf of a person, by id."""
 
@@ -227,6 +235,7 @@ GameCommand: TypeAlias = (
     | GiveBack
     | SetAutonomy
     | CallAgain
+    | Joins
     | AskFor
     | Tell
     | VoidResponse
@@ -294,6 +303,7 @@ NoteKind = Literal[
     "last one",
     "not playing",
     "comes",
+    "joins",
     "goes",
     "asked for",
     "told",
@@ -320,6 +330,13 @@ NoteKind = Literal[
     "nobody named",
     "not seen yet",
     "nothing asked",
+    "no name",
+    "nobody joins",
+    "known already",
+    "which person",
+    "most people",
+    "no seat",
+    "not at front",
     "not acceptable",
     "cannot",
 ]

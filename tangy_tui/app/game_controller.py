@@ -37,6 +37,7 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GiveBack,
     GoOn,
+    Joins,
     OneStep,
     Pause,
     Phase,
@@ -146,7 +147,7 @@ class GameController(EndingGames):
             if self.stopped:
                 return []
             self.taking_over = self.single = self.paused_itself = False
-            self.going = self.past is None
+            self.going = self.past is None or self.goes_on
             self.autonomy.reset()
             self.robot.release(everybody=True)
             if self.stopped:  # in the meantime
@@ -269,6 +270,8 @@ class GameController(EndingGames):
                 return [StaffNote("autonomy", level)]
             case Confirm(yes):
                 return self._confirm(yes=yes)
+            case Joins():
+                return self._let_join(command)
             case AskFor() | Tell():
                 return [self.robot.do(command)]
             case CallAgain() | Drive():

@@ -28,8 +28,10 @@ def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
     if past is None or past.world != world:
         return None
     game = past.beginning.game
-    joined = [one.person for one in past.changes if (one.game, one.what) == (game, "joined")]
-    return past.joined_by(joined, workspace.activity.unread)
+    for one in past.changes:
+        if (one.game, one.what) == (game, "joined"):
+            past = past.joined_by(one.person, workspace.activity.unread, one.place)
+    return past
 
 
 def can_join(workspace: Workspace, past: PastGame) -> bool:
@@ -60,7 +62,11 @@ def take_up(workspace: Workspace, past: PastGame) -> TakenUp:
         check_places(room, len(there) + len(joins))
     workspace.chosen_room = room
     workspace.gather((*there, *joins))
-    going_on = replace(past.joined_by(joins, workspace.activity.unread), newcomers=joins)
+    going_on = replace(past, newcomers=joins)
+    for person in joins:
+        place = workspace.room.next_place(len(going_on.beginning.people))
+        going_on = going_on.joined_by(person, workspace.activity.unread, place)
+    workspace.gather(going_on.beginning.people)
     return TakenUp(going_on, () if joins else new)
 
 

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tangy_profiles.person import MOST_PEOPLE, Person, folded, unaccented
+from tangy_profiles.room import SEAT
+from tangy_tui.app.game_commands import Joins, StaffNote
+from tangy_tui.app.interruption import find_interrupted, take_up
 from tangy_tui.app.register import add_person
 from tangy_tui.app.rooms import check_places
 
 if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_profiles.game_world import GameWorld
+    from tangy_profiles.past_game import PastGame
     from tangy_tui.app.workspace import Workspace
+
+NEW = "new"
+"""Stands for the id of a person who has none yet."""
 
 
 def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
@@ -32,3 +42,60 @@ def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
         new = [person.id for person in workspace.people if person.id not in order]
         workspace.seat([*order, *new])
     return id
+
+
+class Admission:
+    """Lets new people join a running live game."""
+
+    def __init__(self, workspace: Workspace, world: LiveWorld) -> None:
+        """Add people to the participants of a workspace, whose game a world plays."""
+        self._workspace = workspace
+        self._world = world
+
+    def refusal(self, joins: Joins) -> StaffNote | None:
+        """Return why a person cannot join, None if they can.
+
+        Raises:
+            TangyError: the name has another meaning.
+        """
+        from tangy_tui.language.name_conflicts import check_new_name
+
+        workspace, name = self._workspace, joins.name.strip()
+        people, room = workspace.people, workspace.room
+        if not name:
+            return StaffNote("no name")
+        if not workspace.activity.deck.columns:
+            return StaffNote("nobody joins")
+        for person in people:
+            if folded(name) in (folded(person.name), folded(person.id)):
+                return StaffNote("known already", person.id)
+            if unaccented(person.name).split()[:1] == [unaccented(name)]:
+                return StaffNote("which person", person.id, name)
+        if len(people) >= MOST_PEOPLE:
+            return StaffNote("most people", str(MOST_PEOPLE))
+        if len(people) >= room.places:
+            return StaffNote("no seat", str(room.places), room.title)
+        check_new_name(workspace.activity, people, Person(NEW, name))
+        return None
+
+    def admit(self, joins: Joins) -> StaffNote:
+        """Add a person who can join to the participants, and tell their seat.
+
+        Raises:
+            TangyError: the name cannot be given, or the log is full.
+        """
+        workspace, there = self._workspace, self._world.people
+        id = let_join(workspace, joins.name.strip(), guest=joins.guest)
+        place = workspace.room.next_place(len(there))
+        workspace.gather((*there[:place], id, *there[place:]))
+        seat = f"{workspace.room.seat_word or SEAT} {place + 1}"
+        return StaffNote("joins", id, seat)
+
+
+def resume_joined(workspace: Workspace, world: GameWorld) -> PastGame | None:
+    """Return the game that a person has just joined, to resume it with them.
+
+    None if it had no step: then a new game begins with them.
+    """
+    past = find_interrupted(workspace, world)
+    return None if past is None else take_up(workspace, past).past

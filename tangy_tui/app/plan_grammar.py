@@ -14,6 +14,7 @@ from tangy_tui.app.game_commands import (
     ComesIn,
     GameCommand,
     GoesAway,
+    Joins,
     SetPace,
     TakeBackCall,
 )
@@ -23,6 +24,7 @@ CHECK = "check"
 _PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
 _PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
 _MOVED = re.compile(r"(here|left) (.+)|(.+?) (is here|has come|left|has left)", re.I)
+_JOINS = re.compile(r"(add|guest)(?: (.+))?|(.+?) (?:joins|joins in|joins us)", re.I)
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
@@ -46,6 +48,8 @@ def read_planned(
     if rules.patterns and (patterns := _PATTERNS.fullmatch(said)):
         names = [one.strip() for one in re.split(r",|\bthen\b", patterns[1]) if one.strip()]
         return ChoosePatterns(tuple(rules.pattern(name).name for name in names))
+    if joins := _JOINS.fullmatch(said):
+        return Joins(joins[2] or joins[3] or "", (joins[1] or "").casefold() == "guest")
     if moved := _MOVED.fullmatch(said):
         come = (moved[1] or moved[4]).casefold() in ("here", "is here", "has come")
         try:

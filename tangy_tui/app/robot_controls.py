@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.typed_observations import about, sayable
+from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
     TWISTS,
@@ -71,6 +72,14 @@ class RobotControls:
         """Release the stop of staff, or of everybody."""
         if self._robot is not None:
             self._robot.link.release(**({} if everybody else {"by": STAFF}))
+
+    def go_to_front(self) -> bool:
+        """Drive to the front, where the robot process starts; return whether it has arrived.
+
+        Raises:
+            DeviceError: it has to stop.
+        """
+        return self._robot is None or self._robot.drive(FRONT)
 
     @property
     def frozen(self) -> bool:

@@ -156,7 +156,11 @@ class Facilitation:
         self.log.resume(past)
         self._enter(game.game, game.number, len(past.steps), state)
         self._store.append(GameResumed(game=self._game, steps=self.steps, by=by))
-        joined = [self.change("joined", person=person, by=by) for person in past.newcomers]
+        places = {person: place for place, person in enumerate(game.people)}
+        joined = [
+            self.change("joined", person=person, place=places[person], by=by)
+            for person in past.newcomers
+        ]
         return [ResumedGame(self._game, self.games, self.steps, state), *joined]
 
     def _enter(self, game: str, number: int, steps: int, state: ActivityState) -> None:

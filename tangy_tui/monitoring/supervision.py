@@ -205,6 +205,10 @@ class Supervision:
         """Record a STOP: the interrupted behaviour is no fault, and its effects are not checked."""
         self._stops += 1
 
+    def interrupt(self) -> None:
+        """Leave the game where it is, so that another supervision can resume it from the log."""
+        self.game.over = True
+
     def look(self) -> list[Event]:
         """Check the devices without acting, and return the new faults.
 

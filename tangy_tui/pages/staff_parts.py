@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from tangy_tui.monitoring.attention import attention, calls_in
+from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.page import heading, paragraph, table
 from tangy_tui.text import player_facts as players
@@ -57,13 +57,11 @@ def people_part(session: Session) -> Iterator[str]:
 
 def calls_part(session: Session) -> Iterator[str]:
     """List the calls of each game, in order."""
-    told = [(replay.game, calls_in(replay)) for replay in session.replays]
-    told = [(game, calls) for game, calls in told if calls]
+    told = say.call_rows(session)
     if not told:
         return
     yield heading(say.CALLED)
-    for game, calls in told:
-        labels = say.call_labels(calls, session.activity)
+    for game, labels in told:
         cells = "".join(
             f"<s>{escape(label)}</s>" if taken else f"<span>{escape(label)}</span>"
             for label, taken in labels

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.state import FRONT
+from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
 
 if TYPE_CHECKING:
@@ -76,6 +77,13 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
 
 
 REFUSALS: tuple[NoteKind, ...] = (
+    "no name",
+    "nobody joins",
+    "known already",
+    "which person",
+    "most people",
+    "no seat",
+    "not at front",
     "stopped first",
     "asks first",
     "halted first",
@@ -146,6 +154,18 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return "Tangy visits only people who ask."
         case "comes":
             return f"{name(about)} is here."
+        case "joins":
+            return f"{name(about)} joins: {noted.words}. Tangy sets itself up for one more person."
+        case "no name" | "nobody joins" | "not at front" as why:
+            return joining.REFUSED[why]
+        case "known already":
+            return joining.known_words(name(about))
+        case "which person":
+            return joining.which_words(noted.words, name(about))
+        case "most people":
+            return joining.full_words(about)
+        case "no seat":
+            return joining.no_seat_words(noted.words, about)
         case "goes":
             return f"{name(about)} has left."
         case "here before":

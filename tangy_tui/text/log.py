@@ -17,7 +17,14 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.player_facts import HEADING, player_lines
-from tangy_tui.text.report import attention_lines, care_lines, changes_lines, quiet_words
+from tangy_tui.text.report import (
+    attention_lines,
+    call_lines,
+    care_lines,
+    changes_lines,
+    quiet_words,
+    staff_action_lines,
+)
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.staff_actions import action_line
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
@@ -137,6 +144,8 @@ def session_lines(session: Session) -> Iterator[str]:
     for facts in session.player_facts:
         yield f"{HEADING}:"
         yield from player_lines(facts, session.name)
+    yield from call_lines(session)
+    yield from staff_action_lines(session)
     yield ""
     yield counted(len(session.faults), "fault") + ("." if not session.faults else ":")
     numbers = {game.id: game.number for game in session.games}

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.card_news import BY as TANGY
-from tangy_tui.monitoring.attention import Attention, Call
+from tangy_tui.monitoring.attention import Attention, Call, calls_in
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.text.changes import changed_words
@@ -18,6 +19,10 @@ from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import Name
 from tangy_tui.text.staff_actions import action_words
 from tangy_tui.text.times import length, time_of_day
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.games import Game
+    from tangy_tui.monitoring.session import Session
 
 WORLD_WORDS: Mapping[GameWorld, str] = {
     UNKNOWN: "from an unknown world",
@@ -33,7 +38,7 @@ PEOPLE_COLUMNS = (
     "won",
 )  # fmt: skip
 CALLED = "Numbers that were called"
-TAKEN_BACK = "crossed out: taken back"
+TAKEN_BACK, BACK = "crossed out: taken back", "taken back"
 STAFF = "What staff did"
 STAFF_COLUMNS = ("when", "who", "what")
 NO_STAFF = "Staff did not step in."
@@ -191,6 +196,30 @@ def fault_outcome(fault: Fault, status: str) -> str:
     """Describe how a fault ended: the last move, and its status."""
     told = [move_words(move) for move in fault.moves]
     return "; ".join(dict.fromkeys([*told[-1:], status]))
+
+
+def call_rows(session: Session) -> list[tuple[Game, list[tuple[str, bool]]]]:
+    """Return the calls of each game that has any: each label, and whether it was taken back."""
+    rows = [(replay.game, calls_in(replay)) for replay in session.replays]
+    return [(game, call_labels(calls, session.activity)) for game, calls in rows if calls]
+
+
+def call_lines(session: Session) -> Iterator[str]:
+    """List the calls of each game in order."""
+    rows = call_rows(session)
+    if rows:
+        yield f"{CALLED}:"
+    for game, labels in rows:
+        which = f"game {game.number}: " if len(rows) > 1 else ""
+        called = [f"{label} ({BACK})" if taken else label for label, taken in labels]
+        yield f"  {which}{', '.join(called)}"
+
+
+def staff_action_lines(session: Session) -> Iterator[str]:
+    """List what staff did, with times and names."""
+    rows = staff_rows(session.replays, session.name)
+    yield f"{STAFF}:" if rows else NO_STAFF
+    yield from (f"  {when}  {who}: {what}" for when, who, what in rows)
 
 
 def call_labels(calls: Sequence[Call], activity: Activity | None) -> list[tuple[str, bool]]:

@@ -11,6 +11,7 @@ WHO_IS_HERE = "Who has come, or has left?"
 AWAY = "away"
 """Beside a person who is not here, where there is little room."""
 IS_HERE, IS_AWAY = "here: Enter if they leave", "not here: Enter if they have come"
+SOMEBODY_NEW = "somebody new", "Enter, and type the name"
 
 
 def example_words(rules: GameRules) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from textual.constants import ESCAPE_DELAY
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.switching_on import SwitchingOn
     from tangy_tui.learning.policy import Policy
     from tangy_tui.ui.program import Program
+    from tangy_tui.ui.screens.live import LiveScreen
 
 TYPED_AHEAD_SECONDS = 1.5 * ESCAPE_DELAY
 """After this time in s, an Esc typed before the screen was open has been recognised as a key."""
@@ -65,37 +67,76 @@ async def play_live(
     `set_up`, staff set the game up first and decide when to switch the robot on. The `pace` is in s
     from call to call.
     """
+    from tangy_tui.app.joining import resume_joined
     from tangy_tui.app.set_up import SetUp
+
+    workspace = program.workspace
+    setup = SetUp.of(workspace, pace)
+    played = await _play(
+        program, opening, policy, games=games, seed=seed, teacher=teacher, past=past,
+        setup=setup, set_up=set_up,
+    )  # fmt: skip
+    while played is not None and played.control.joined:
+        past = resume_joined(workspace, played.world.played_in)
+        policy, cards = played.control.supervision.policy, played.world.known_cards
+        games -= played.tally.games
+        played = await _play(
+            program, opening, policy, games=games, seed=seed, teacher=teacher, past=past,
+            setup=setup, goes_on=played.control.goes_on, cards=cards,
+        )  # fmt: skip
+
+
+async def _play(
+    program: Program,
+    opening: WorldOpening,
+    policy: Policy,
+    *,
+    games: int,
+    seed: int,
+    teacher: str,
+    past: PastGame | None,
+    setup: SetUp,
+    set_up: bool = False,
+    goes_on: bool = False,
+    cards: Mapping[str, int] | None = None,
+) -> LiveScreen | None:
+    """Play with the robot on; return the screen, whose game may only be interrupted.
+
+    `goes_on` continues a resumed game at once; `cards` are those known before a person joined it.
+    """
     from tangy_tui.app.switching_on import SwitchingOn
 
     workspace = program.workspace
-    robot = SwitchingOn(opening)
-    setup, activity = SetUp.of(workspace, pace), workspace.profile
+    robot, activity = SwitchingOn(opening), workspace.profile
     try:
         if set_up:
             world = await _set_up(program, setup, robot)
         else:
             world = await _switch_on(program, robot)
         if world is None:
-            return
+            return None
+        from tangy_tui.app.joining import Admission
         from tangy_tui.learning.policies import load_policy
         from tangy_tui.text.calls import REHEARSAL
         from tangy_tui.ui.screens.live import LiveScreen
 
         if workspace.profile != activity:
             policy, _ = load_policy(workspace.store, workspace.activity)
-        if set_up:
+        if past is None:
             setup.carry_out(world)
-        elif past is None:
-            world.set_pace(pace)
         supervision = workspace.supervision(
             policy, seed, asks=True, world=world, rehearsal=REHEARSAL
         )
         screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
-        screen.minutes = setup.minutes if past is None else past.beginning.plan.minutes
+        screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
+        screen.control.goes_on = goes_on
+        screen.control.admission = Admission(workspace, world)
+        if cards and world.played_in != game_world.BENCH:  # the bench deals new ones
+            world.cards.dealt.deal(cards)
         if program.hearing is not None:
             program.hearing.ears.begin()
         await program.push_screen_wait(screen)
+        return screen
     finally:
         await asyncio.shield(asyncio.to_thread(robot.close))
 

@@ -257,6 +257,10 @@ def test_the_log_and_the_report_include_changes_of_the_game(taught: Path) -> Non
         assert not any("had not asked" in line and session.name(person) in line for line in summed)
     page, short = session_page(session), list(session_lines(session))
     assert summed and all(line in page and line in short for line in summed)
+    calls = {activity.deck.label(number) for number in planned.world.called_now}
+    assert len(calls) == 30 and all(f">{call}<" in page for call in calls)
+    listed = short[short.index("Numbers that were called:") + 1]
+    assert calls == set(listed.strip().split(", "))
     planned.workspace.close()
 
 

@@ -32,8 +32,8 @@ PEOPLE = ("user1", "user2", "user3", "user4")
 class HeldLink(FakeLink):
     """A robot whose behaviours end only when the test allows it."""
 
-    def __init__(self) -> None:
-        super().__init__(PEOPLE)
+    def __init__(self, people: tuple[str, ...] = PEOPLE) -> None:
+        super().__init__(people)
         self.free = True
         self.stamps = 0
         """How often the screen has said that it lives."""
@@ -87,7 +87,7 @@ def live_world(
     """Make the world of a robot."""
     return kind(
         workspace.activity,
-        PEOPLE,
+        tuple(workspace.names),
         cast(RobotLink, link),
         workspace.robot,
         workspace.room,

@@ -143,6 +143,12 @@ class LivePlan(PlannedGame):
         """Return the owner of a card, as told or seen; "" if unknown."""
         return self.cards.dealt.owner(card)
 
+    @property
+    def known_cards(self) -> dict[str, int]:
+        """The people whose cards are known, with the numbers of these."""
+        known = {person: self.cards.dealt.card_of(person) for person in self.people}
+        return {person: card for person, card in known.items() if card is not None}
+
     def _play_pattern(self) -> None:
         super()._play_pattern()
         deck = self.activity.deck

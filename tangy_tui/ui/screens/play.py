@@ -229,6 +229,9 @@ class PlayScreen(PlayStaff):
                 await self._play_game()
             except TangyError as error:  # logging failed, so pause
                 await self._hold(str(error))
+            if self.control.joined:
+                self.leave(self.tally)
+                return
 
     async def _may_begin(self) -> bool:
         """Ask before a game begins after one with an uncleared fault."""

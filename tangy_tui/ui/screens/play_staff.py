@@ -22,6 +22,7 @@ from tangy_tui.app.game_commands import (
     GiveBack,
     GoesAway,
     GoOn,
+    Joins,
     Pause,
     Proposal,
     StaffNote,
@@ -38,16 +39,19 @@ from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.confirmations import confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
-from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, WHO_IS_HERE, example_words
+from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, SOMEBODY_NEW, WHO_IS_HERE, example_words
 from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.base import perform
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
+from tangy_tui.ui.joining import ask_who_joins
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted
 
+NEW = "new"
+"""The choice of a person who is not known yet."""
 PACE_SECONDS = 1.0
 """The delay after the last change of pace before the new pace is shown."""
 SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
@@ -215,8 +219,12 @@ class PlayStaff(PlayPanels):
             Option(person.id, person.name, IS_AWAY if person.id in away else IS_HERE)
             for person in self._workspace.people
         ]
+        if self.control.admission is not None:
+            options.append(Option(NEW, *SOMEBODY_NEW))
         person = await self.app.push_screen_wait(ChooseDialog(WHO_IS_HERE, options))
-        if person is not None:
+        if person == NEW and (who := await ask_who_joins(self.app)) is not None:
+            self._do(Joins(*who))
+        elif person not in (None, NEW):
             self._do(ComesIn(person) if person in away else GoesAway(person))
 
     def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:

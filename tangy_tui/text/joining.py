@@ -1,0 +1,36 @@
+"""Words about a new person who joins a running game, or cannot."""
+
+from __future__ import annotations
+
+REFUSED = {
+    "no name": "Type the name as well, as in: add Berta.",
+    "nobody joins": "Nobody new can join this game. Add them before the next one.",
+    "not at front": "Tangy could not drive to the front, so nobody has joined yet. Try again.",
+}
+"""Why nobody can join, by the kind of note."""
+
+
+def known_words(name: str) -> str:
+    """Tell that a person of this name takes part."""
+    return f"{name} takes part already. If {name} was away, type: here {name}."
+
+
+def which_words(wanted: str, name: str) -> str:
+    """Ask whether a known person is meant whose first name was typed."""
+    return (
+        f"{name} takes part already. If you mean {name}, type: here {name}. "
+        f"For another {wanted}, type the whole name."
+    )
+
+
+def full_words(people: str) -> str:
+    """Tell that the most people take part."""
+    return f"{people} people take part already, and that is the most. Nobody else can join."
+
+
+def no_seat_words(room: str, seats: str) -> str:
+    """Tell that each seat of the room is taken."""
+    return (
+        f"All {seats} seats of {room} are taken. End the game, and choose a room with more "
+        "seats before the next one."
+    )

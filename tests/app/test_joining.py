@@ -1,0 +1,175 @@
+"""A new person joins a running live game, which goes on with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_records import GameChange, GameEnding
+from tangy_profiles.game_world import LIVE
+from tangy_profiles.past_game import PastGame
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_profiles.state import FRONT
+from tangy_tui.app.command_grammar import read_command
+from tangy_tui.app.game_commands import AskFor, GoesAway, Joins, StaffNote, StopRobot
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.interruption import find_interrupted, take_up
+from tangy_tui.app.joining import Admission, resume_joined
+from tangy_tui.app.register import guest_ids
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.log_check import log_problems
+from tangy_tui.monitoring.session import read_session
+from tangy_tui.pages.session import session_page
+from tangy_tui.text.control import noted_words
+from tangy_tui.text.log import session_lines
+from tests.hw.links import FakeLink
+
+SEED = 31
+
+
+class LiveGame:
+    """A live game over a fake link, which people can join."""
+
+    def __init__(
+        self, workspace: Workspace, past: PastGame | None = None, *, goes_on: bool = False
+    ) -> None:
+        policy, _ = load_policy(workspace.store, workspace.activity)
+        self.workspace = workspace
+        self.link = FakeLink(tuple(workspace.names))
+        self.world = LiveWorld(
+            workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
+            load_robot(), workspace.room, seed=SEED, names=workspace.names, pace=0.0,
+        )  # fmt: skip
+        supervision = workspace.supervision(policy, SEED, asks=True, world=self.world)
+        self.control = GameController(supervision, "Ada", robot=self.world, past=past)
+        self.control.goes_on = goes_on
+        self.control.admission = Admission(workspace, self.world)
+        self.control.begin()
+
+    def play(self, steps: int) -> None:
+        for _ in range(steps):
+            self.control.next()
+
+    def says(self, joins: Joins) -> str:
+        return noted_words(self.told(joins), self.workspace.name)
+
+    def told(self, joins: Joins) -> StaffNote:
+        (note,) = self.control.apply(joins)
+        assert isinstance(note, StaffNote)
+        return note
+
+
+def known(workspace: Workspace, *names: str) -> None:
+    for person, name in zip(workspace.people, names, strict=False):
+        workspace.rename(person, name)
+
+
+@pytest.mark.parametrize(
+    ("typed", "joins"),
+    [
+        ("add Berta", Joins("Berta")),
+        ("Berta Blum joins", Joins("Berta Blum")),
+        ("guest Berta", Joins("Berta", guest=True)),
+        ("add", Joins("")),
+    ],
+)
+def test_staff_say_who_joins(typed: str, joins: Joins) -> None:
+    assert read_command(typed, str) == joins
+
+
+def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.play(6)
+    before.control.apply(AskFor("user3"))
+    before.play(1)
+    called, asking = tuple(before.world.called), before.world.scene().requests
+    note = before.told(Joins("Berta"))
+    assert (note.kind, note.about) == ("joins", "user5") and before.control.joined
+    assert before.control.supervision.over
+    do, what = before.link.done[-1]
+    assert do == "go" and what["name"] == FRONT  # where the robot process starts anew
+    past = resume_joined(workspace, LIVE)
+    after = LiveGame(workspace, past, goes_on=before.control.goes_on)
+    assert after.control.phase == "running"  # nobody has to say that it goes on
+    assert after.world.people == ("user1", "user2", "user3", "user4", "user5")
+    assert tuple(after.world.called) == called and after.world.scene().requests == asking
+    after.control.apply(AskFor("user5"))
+    after.play(3)
+    called = tuple(after.world.called)
+    workspace.close()  # and kill -9
+
+    workspace = Workspace(taught)
+    past = find_interrupted(workspace, LIVE)
+    assert past is not None
+    again = LiveGame(workspace, take_up(workspace, past).past)
+    assert again.control.phase == "paused"
+    assert again.world.people == after.world.people and tuple(again.world.called) == called
+    assert "user5" in again.world.scene().requests
+    again.control.apply(GoesAway("user5"))
+    assert "user5" in again.world.away
+    session = read_session(workspace.store, read_games(workspace.store), {}, workspace.names)
+    (game,) = session.replays
+    assert game.game.people == again.world.people and not log_problems(workspace.store)
+    page, lines = session_page(session), list(session_lines(session))
+    assert any("Ada: Berta left" in line for line in lines) and "Berta left" in page
+    joined = [e.record for e in workspace.store.events(GameChange) if e.record.what == "joined"]
+    assert [(one.person, one.by) for one in joined] == [("user5", "Ada")]
+    assert not list(workspace.store.events(GameEnding))
+    workspace.close()
+
+
+def test_a_guest_joins_for_today(taught: Path) -> None:
+    workspace = Workspace(taught)
+    game = LiveGame(workspace)
+    game.play(3)
+    assert game.told(Joins("Berta", guest=True)).about in guest_ids(workspace.store)
+    workspace.close()
+
+
+def test_nobody_joins_without_a_name_a_seat_or_a_name_of_their_own(taught: Path) -> None:
+    workspace = Workspace(taught)
+    known(workspace, "Zoe Miller", "Rosa")
+    game = LiveGame(workspace)
+    game.play(3)
+    people = workspace.names
+    assert "add Berta" in game.says(Joins(""))
+    assert "here Rosa" in game.says(Joins("rosa"))
+    assert "here Zoe Miller" in game.says(Joins("Zoe"))
+    game.control.apply(StopRobot())
+    assert game.told(Joins("Berta")).kind == "stopped first"
+    assert workspace.names == people and not game.control.joined
+    workspace.close()
+
+
+def test_a_full_room_is_named_with_its_seats(taught: Path) -> None:
+    workspace = Workspace(taught, users=8)
+    game = LiveGame(workspace)
+    game.play(3)
+    assert "All 8 seats" in game.says(Joins("Berta"))
+    workspace.close()
+    workspace = Workspace(taught, users=24)
+    game = LiveGame(workspace)
+    game.play(3)
+    assert "24 people" in game.says(Joins("Berta"))
+    workspace.close()
+
+
+@pytest.mark.parametrize("count", range(8, 24))
+def test_nobody_changes_tables_when_one_more_sits_down(count: int) -> None:
+    room = load_room("hall")
+    place = room.next_place(count)
+    people = [str(number) for number in range(count)]
+    more = [*people[:place], "new", *people[place:]]
+
+    def tables(those: list[str]) -> list[set[str]]:
+        return [{those[n] for n in sitting} - {"new"} for sitting in room.at_tables(len(those))]
+
+    assert tables(more) == tables(people)

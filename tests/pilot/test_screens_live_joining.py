@@ -1,0 +1,69 @@
+"""A new person joins on the live screen, and the game goes on with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from tangy_hw.cancellation import Cancellation
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.live_games import play_live
+from tangy_tui.ui.program import Program
+from tests.pilot.conftest import Run, StillClock
+from tests.pilot.live_games import HeldLink, live, live_world, paused_after
+from tests.support.waiting import until_shown
+
+
+class Robot:
+    """A robot that is switched on again for each group of people."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.groups: list[tuple[str, ...]] = []
+        self.off = 0
+        self.links: list[HeldLink] = []
+        self._workspace = workspace
+
+    @contextmanager
+    def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
+        people = tuple(self._workspace.names)
+        self.groups.append(people)
+        link = HeldLink(people)
+        link.most = 3  # calls, and no more
+        self.links.append(link)
+        try:
+            yield live_world(self._workspace, link)
+        finally:
+            self.off += 1
+
+
+@pytest.mark.slow
+async def test_a_new_person_joins_a_game_on_the_screen(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    robot = Robot(workspace)
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        first = live(pilot)
+        called = tuple(first.world.called)
+        await pilot.press("L")
+        await until_shown(pilot, lambda: "somebody new" in pilot.text())
+        await pilot.press(*"new", "enter")
+        await until_shown(pilot, lambda: "Who has come?" in pilot.text())
+        await pilot.press(*"Berta", "enter")
+        await until_shown(pilot, lambda: "Is Berta here for good?" in pilot.text())
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: "Berta takes part from now on." in pilot.text())
+        assert live(pilot) is not first
+        assert robot.off == 1 and robot.groups[1] == (*robot.groups[0], "user5")
+        assert workspace.name("user5") == "Berta"
+        assert tuple(live(pilot).world.called)[: len(called)] == called
+        assert not live(pilot).control.going  # as it was before
