@@ -18,9 +18,9 @@ from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_m
 from tangy_tui.language.intents import SHIPPED, Intents, digest_of
 from tangy_tui.language.mentions import Mentions
 from tangy_tui.language.words import words_of
-from tangy_tui.learning.verification import Say
-from tangy_tui.speech.evidence import USUAL
-from tangy_tui.speech.understanding import clearly_heard, understand, wanted
+from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence
+from tangy_tui.speech.understanding import clearly_heard, commanded, understand, wanted
 from tests.support.changed import changed_trivia
 from tests.support.understood import behaviour_of
 
@@ -178,6 +178,11 @@ def test_of_several_guesses_the_likeliest_meaning_on_the_weighted_average_counts
     assert found[0].behaviour == alone[0].behaviour == "joke"
     assert found[0].confidence < alone[0].confidence
     assert BOOK.paraphrased(guesses[0], "the weather is nice today", "my back hurts") == ()
+
+
+def test_a_yes_is_heard_whatever_the_guesses_at_a_sentence_are() -> None:
+    heard = AcousticEvidence("yes", "", 0.0, 1.0, 1.0, guesses=("guess the", "guess"))
+    assert commanded(heard, BOOK, USUAL, live=False) == (Reply(True), None)
 
 
 def test_the_person_whom_most_guesses_name_is_meant() -> None:
