@@ -83,6 +83,7 @@ class Asked:
     target: str | None
     others: tuple[str, ...] = ()
     """The questions for the alternatives."""
+    typed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +94,7 @@ class Offered:
     confidence: float
     alternatives: tuple[str, ...]
     questions: tuple[str, ...]
+    typed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,10 +161,11 @@ class Verifier:
         self._observe = observe
         self._names = names
         self._others: tuple[Command, ...] = ()
+        self._typed = False
 
     def say(self, said: Say) -> Verification:
         """Understand a command, and ask about it."""
-        self.question = None
+        self.question, self._typed = None, said.commands is None
         if said.commands is None:
             command = self._phrasebook.understand(said.text)
             commands = () if command is None else (command, *self._alternatives(command))
@@ -254,6 +257,7 @@ class Verifier:
             names,
             target,
             tuple(map(self._words, self._others)),
+            self._typed,
         )
         return self.question
 
@@ -264,6 +268,7 @@ class Verifier:
             said.confidence,
             tuple(command.behaviour for command in self._others),
             tuple(map(self._words, self._others)),
+            self._typed,
         )
         return self.question
 

@@ -119,14 +119,15 @@ def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
     """Format the verification of a command in lines; `yes` is what to type for yes."""
     match said:
         case Asked(question=question, heard=heard, confidence=confidence, others=others):
+            told = "you typed" if said.typed else "heard"
             lines = [f"Did you say: {question}? Type {yes} to do it, or N for another command."]
             if confidence < 1:
-                lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
+                lines.append(f"  {told} {plain(heard)!r}, {confidence:.0%} sure")
             return lines + [
                 f"  {number} instead: {other}" for number, other in enumerate(others, 1)
             ]
-        case Offered(heard, confidence, _, questions):
-            told = "You typed" if confidence >= 1 else "I heard"
+        case Offered(heard=heard, questions=questions, typed=typed):
+            told = "You typed" if typed else "I heard"
             return [
                 f"{told} {plain(heard)!r}. Did you mean one of these? Type its number, or N.",
                 *(f"  {number}  {question}" for number, question in enumerate(questions, 1)),

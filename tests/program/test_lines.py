@@ -132,7 +132,7 @@ def test_alternatives_are_chosen_by_number_and_verified(workspace: Workspace) ->
     asked = [line.partition("?")[0] for line in said if line.startswith("Did you say: ")]
     goodbye, call = "Did you say: say goodbye", "Did you say: call number"
     assert asked == [goodbye, call, goodbye], "nothing is executed unasked"
-    assert said[4].startswith("  heard 'goodbye number', ")
+    assert said[4].startswith("  you typed 'goodbye number', ")
     assert said[4].endswith("% sure")
     assert said[5:8] == [
         "  1 instead: ask to mark numbers", "  2 instead: call number", "There is no choice 9.",

@@ -74,6 +74,8 @@ class VerifyingDialog(Dialog[Answer]):
     }
     """
     ID: ClassVar[str]
+    typed = False
+    """Whether the words were typed, and not spoken; set before it is shown."""
 
     def __init__(
         self,
@@ -193,7 +195,7 @@ class VerifyingDialog(Dialog[Answer]):
     def _grounds(self) -> Parts:
         grounds: list[Parts] = []
         if self._heard:
-            told = TYPED if self._confidence is None else HEARD
+            told = TYPED if self.typed else HEARD
             grounds.append([(f"{told} ", "$ink-dim"), self._heard])
         if self._confidence is not None:
             grounds.append([(f"{CONFIDENCE} ", "$ink-dim"), f"{self._confidence:.2f}"])
@@ -322,18 +324,22 @@ class ChoicesDialog(VerifyingDialog):
 
 def dialog_for(question: Asked | Offered, aloud: str = "") -> VerifyingDialog:
     """Create the dialog for a session's question; exactly typed words are not repeated."""
+    dialog: VerifyingDialog
     if isinstance(question, Offered):
-        return ChoicesDialog(
+        dialog = ChoicesDialog(
             heard=question.heard,
             confidence=None if question.confidence >= 1 else question.confidence,
             choices=question.questions,
             aloud=aloud,
         )
-    certain = question.confidence >= 1
-    return QuestionDialog(
-        question.question,
-        heard="" if certain else question.heard,
-        confidence=None if certain else question.confidence,
-        alternatives=question.others,
-        aloud=aloud,
-    )
+    else:
+        certain = question.confidence >= 1
+        dialog = QuestionDialog(
+            question.question,
+            heard="" if certain else question.heard,
+            confidence=None if certain else question.confidence,
+            alternatives=question.others,
+            aloud=aloud,
+        )
+    dialog.typed = question.typed
+    return dialog
