@@ -19,6 +19,7 @@ from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.app.chosen_activity import choosable
 from tangy_tui.app.joining import let_join
+from tangy_tui.app.on_duty import on_duty, take_duty
 from tangy_tui.app.rooms import KnownRoom, choose_room, find_room, known_rooms
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ class SetUp:
     strength: str = ""
     pace: float = USUAL_PACE
     minutes: int = 0
+    on_duty: str = ""
     world: LiveWorld | None = None
     """The robot, once it is on."""
     card: str = ""
@@ -84,7 +86,7 @@ class SetUp:
     @classmethod
     def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
         """Start with everybody present, in their last seats; `pace` is in s from call to call."""
-        set_up = cls(workspace, pace=pace)
+        set_up = cls(workspace, pace=pace, on_duty=on_duty(workspace.store.folder))
         set_up._seat_as_before()
         return set_up
 
@@ -138,6 +140,14 @@ class SetUp:
         """
         if self.world is None and not self.teams_play:
             self.seats.append(let_join(self.workspace, name, guest=guest))
+
+    def take_duty(self, name: str) -> None:
+        """Set who is on duty, and keep it for the next session.
+
+        Raises:
+            TangyError: it is no valid name.
+        """
+        self.on_duty = take_duty(self.workspace.store.folder, name)
 
     def rename(self, person: str, name: str) -> None:
         """Change a person's name.

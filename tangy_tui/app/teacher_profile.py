@@ -91,10 +91,10 @@ def checked(name: str) -> str:
     return read_name(name, "A teacher's name")
 
 
-def login_name() -> str:
+def login_name(nobody: str = NOBODY) -> str:
     """Return the login name, or a placeholder if there is none."""
     login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
-    return plain(login).strip()[:LONGEST_NAME].strip() or NOBODY
+    return plain(login).strip()[:LONGEST_NAME].strip() or nobody
 
 
 def teacher_name(given: str | None, folder: Path) -> str:

@@ -25,6 +25,7 @@ _MINUTES = re.compile(r"time (\d{1,3})(?: minutes?)?", re.I)
 _WORDS = re.compile(r"words (.+)", re.I)
 _JOINS = re.compile(r"(guest|add) (.+)", re.I)
 _NAME = re.compile(r"rename (.+?) to (.+)", re.I)
+_DUTY = re.compile(r"(?:on )?duty (.+)|(.+) is on duty", re.I)
 _ACTIVITY = re.compile(r"activity (.+)", re.I)
 _ROOM = re.compile(r"room (.+)", re.I)
 _SHOW = "show"
@@ -113,6 +114,8 @@ class SetUpLines:
             self._add(joins[2], guest=joins[1].casefold() == "guest")
         elif name := _NAME.fullmatch(words):
             setup.rename(self._find(name[1]), name[2])
+        elif duty := _DUTY.fullmatch(words):
+            setup.take_duty(duty[1] or duty[2])
         elif wanted := _ACTIVITY.fullmatch(words):
             self._play(wanted[1])
         elif room := _ROOM.fullmatch(words):

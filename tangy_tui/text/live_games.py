@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from tangy_profiles.robot import Robot
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    from tangy_tui.monitoring.games import Game
 
 STARTING = "Its devices are being started. It stands still until the game begins."
 READY, NOW = "Ready: {}.", "Starting now: {} ..."
@@ -54,3 +60,13 @@ SWITCH_ON_DETAIL = (
 def switch_on_words(robot: str) -> str:
     """Ask before a robot is switched on."""
     return f"Switch {robot} on?"
+
+
+def played_lines(games: Sequence[Game], since: datetime) -> list[str]:
+    """Tell how the games ended that ended `since` a time, and how to get their report."""
+    over = [game for game in games if game.ended is not None and game.ended >= since]
+    lines = [f"Game {game.number}: {game.ending.rstrip('.')}." for game in over]
+    return [*lines, REPORT] if over else []
+
+
+REPORT = "For the report of the session, type: tangy report"

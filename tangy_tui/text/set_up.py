@@ -28,6 +28,8 @@ CHOICES: dict[Choice, str] = {
 }
 TEAMS_PLAY = "Teams play this activity: people are not added one by one."
 ACTIVITY, ROOM = "Activity", "Room"
+ON_DUTY, WHO_IS_ON_DUTY = "On duty", "Who is on duty?"
+DUTY_DETAIL = "Reports show this name for what staff do."
 ADD, ADD_GUEST, RENAME = "Who has come?", "Is {} here for good?", "What is {} called?"
 FOR_GOOD, TODAY = "takes part from now on", "is a guest today"
 FOR_GOOD_NOTE, TODAY_NOTE = "Tangy remembers the person", "Tangy forgets the person tomorrow"
@@ -216,7 +218,7 @@ def _to_do(check: Check) -> str:
 LINES_HELP = (
     "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
     "activity trivia, room hall, play for line, full card, several winners, pace 20, visits on, "
-    "words gentle, time 40. Show lists everything again. Then: begin. Or: end."
+    "words gentle, time 40, duty Nina. Show lists everything again. Then: begin. Or: end."
 )
 UNCHANGED = "That changes nothing."
 
@@ -263,7 +265,7 @@ def lines_of(setup: SetUp) -> list[str]:
 def _game_lines(setup: SetUp) -> list[str]:
     """Describe the choices for the game; without patterns there are fewer."""
     pace = f"Pace: {pace_words(setup.pace)}. " if setup.calls else ""
-    pace = f"{pace}Time: {minutes_words(setup.minutes)}."
+    pace = f"{pace}Time: {minutes_words(setup.minutes)}. {ON_DUTY}: {setup.on_duty}."
     if not setup.workspace.activity.rules.patterns:
         return [pace, f"Tangy's words: {strength_words(setup)}."]
     return [

@@ -28,6 +28,8 @@ PHASES: dict[Phase, str] = {
 }
 
 LAST_CALLS = 5
+ONLOOKER = "a colleague"
+"""Stands for an onlooker who gave no name, if there is no login name either."""
 
 READ_ONLY = "You are watching. Your keys do not change the game; only STOP stops the robot."
 NOBODY = "No Tangy runs here. This screen shows a game as soon as one begins."

@@ -29,3 +29,8 @@ async def ask_new_name(app: App[Any], name: str) -> str | None:
     dialog = NameDialog(name, text.RENAME.format(name), text.NAME_DETAIL)
     wanted = await app.push_screen_wait(dialog)
     return None if wanted in (None, name) else wanted
+
+
+async def ask_who_is_on_duty(app: App[Any], name: str) -> str | None:
+    """Ask who is on duty; None leaves it unchanged."""
+    return await app.push_screen_wait(NameDialog(name, text.WHO_IS_ON_DUTY, text.DUTY_DETAIL))

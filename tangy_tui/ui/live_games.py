@@ -127,7 +127,9 @@ async def _play(
         supervision = workspace.supervision(
             policy, seed, asks=True, world=world, rehearsal=REHEARSAL
         )
-        screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher, past=past)
+        screen = LiveScreen(
+            workspace, supervision, world, games=games, teacher=teacher or setup.on_duty, past=past
+        )
         screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
         screen.control.goes_on = goes_on
         screen.control.admission = Admission(workspace, world)

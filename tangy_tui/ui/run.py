@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.game_rules import USUAL_PACE
+from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.app.teacher_profile import change_theme, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.text.live_games import played_lines
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
 from tangy_tui.ui.drills import hold_drill
@@ -134,7 +138,7 @@ def run_live(
         policy: the policy to play by.
         games: the number of games.
         seed: seeds new games.
-        teacher: who answers Tangy's questions.
+        teacher: who answers Tangy's questions; "": who is on duty.
         ascii_only: draw with ASCII characters.
         world: the world of the games.
         ears: the recogniser for stops and answers.
@@ -162,7 +166,11 @@ def run_live(
             )
         program.leave()
 
-    return _run(workspace, start, ascii_only, ears)
+    begun = datetime.now(UTC)
+    status = _run(workspace, start, ascii_only, ears)
+    for line in played_lines(read_games(workspace.store), begun):
+        print(plain(line))
+    return status
 
 
 def run_drill(

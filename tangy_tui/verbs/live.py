@@ -77,6 +77,9 @@ def live(
         ),
     ] = None,
     teacher: Teacher = None,
+    by: Annotated[
+        str, typer.Option("--by", help="Who is on duty; reports show it with what staff do.")
+    ] = "",
     expert: Expert = "",
     pace: Annotated[
         float, typer.Option(min=1, max=300, help="Seconds from one call to the next.")
@@ -158,12 +161,15 @@ def live(
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
     from tangy_tui.app.machine_load import machine_load
+    from tangy_tui.app.on_duty import on_duty, take_duty
 
     with (
         machine_load(load),
         open_workspace(data, activity, users, robot=robot, room=room) as workspace,
     ):
         need_policy(workspace.store, workspace.activity, policy)
+        if by:
+            take_duty(workspace.store.folder, by)
         world = BENCH if bench else LIVE
         tell_small_room(workspace)
         past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)
@@ -198,7 +204,7 @@ def live(
                     learnt,
                     games=games,
                     seed=number,
-                    teacher=who,
+                    teacher="" if teacher is None else who,
                     ascii_only=ascii_only,
                     world=world,
                     past=past,
@@ -251,6 +257,7 @@ def live(
                 learnt, number, asks=asks, world=there, rehearsal=rehearsal
             )
             if plain_lines:
+                who = who if teacher is not None else on_duty(workspace.store.folder)
                 to_their_end = play_with_staff(
                     workspace, supervision, games, who, robot=there, past=past
                 )

@@ -39,8 +39,9 @@ def watch(
     from tangy_tui.app.teacher_profile import login_name
     from tangy_tui.app.watching import Guest
     from tangy_tui.app.workspace import data_folder
+    from tangy_tui.text.watching import ONLOOKER
 
-    who, folder = by or login_name(), data_folder(data)
+    who, folder = by or login_name(ONLOOKER), data_folder(data)
     if stop:
         _stop(Guest(folder), who)
     elif not (plain_lines or as_json) and full_screen():

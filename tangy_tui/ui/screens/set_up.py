@@ -29,7 +29,7 @@ from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.tablet import TabletDialog
-from tangy_tui.ui.joining import ask_new_name, ask_who_joins
+from tangy_tui.ui.joining import ask_new_name, ask_who_is_on_duty, ask_who_joins
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import WIDE, KeyLine, panel
@@ -239,6 +239,8 @@ class SetUpScreen(TangyScreen[bool]):
                 self._say(OTHER_ROOM)
             case "room" if not self._busy:
                 self.run_worker(self._ask(self._choose_room), name="room", group="check")
+            case "duty" if not self._busy:
+                self.run_worker(self._ask(self._change_duty), name="duty", group="check")
             case "patterns":
                 self._say(text.PATTERNS_HOW)
 
@@ -273,6 +275,10 @@ class SetUpScreen(TangyScreen[bool]):
     async def _choose_room(self) -> None:
         if room := await ask_room(self.app, self.setup.rooms()):
             self.setup.choose_room(room)
+
+    async def _change_duty(self) -> None:
+        if name := await ask_who_is_on_duty(self.app, self.setup.on_duty):
+            self.setup.take_duty(name)
 
     async def _join(self) -> None:
         if who := await ask_who_joins(self.app):

@@ -46,6 +46,7 @@ def game_lines(setup: SetUp, width: int) -> list[SetUpLine]:
         ("visits", "Visits", text.visits_words(setup)),
         ("strength", "Tangy's words", text.strength_words(setup)),
         ("minutes", "Time", text.minutes_words(setup.minutes)),
+        ("duty", text.ON_DUTY, setup.on_duty),
     ]
     rules = workspace.activity.rules
     if not setup.calls:
