@@ -70,7 +70,8 @@ def test_nothing_is_executed_before_a_yes(store: Store) -> None:
     teaching = begun(store)
     before = teaching.world.observe()
     asked = teaching.apply(Say("greet everyone"))
-    assert asked == [Asked("greeting", "greet everyone", "greet everyone", 1.0, (), None)]
+    words = "greet everyone"
+    assert asked == [Asked("greeting", words, words, 1.0, (), None, typed=True)]
     assert teaching.question == asked[0]
     assert teaching.world.observe() == before
     assert logged(store) == []
