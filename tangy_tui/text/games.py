@@ -176,9 +176,10 @@ def begun_words(number: int) -> str:
     return f"Game {number} begins."
 
 
-def resumed_words(number: int, steps: int) -> str:
-    """Tell that an interrupted game is resumed, and that it is paused."""
-    return f"Game {number} is back where it was after {counted(steps, 'step')}. It is paused."
+def resumed_words(number: int, steps: int, *, goes_on: bool = False) -> str:
+    """Tell that an interrupted game is resumed, and that it is paused unless it `goes_on`."""
+    then = "" if goes_on else " It is paused."
+    return f"Game {number} is back where it was after {counted(steps, 'step')}.{then}"
 
 
 def earlier_steps_words(steps: int) -> str:

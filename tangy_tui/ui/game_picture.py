@@ -68,6 +68,8 @@ class GamePicture:
         """The ground of each step of the present game."""
         self.lesson = ""
         """The lesson of the last answer, until the next question tells it."""
+        self.goes_on = False
+        """Whether a resumed game continues at once."""
         self._stage = ""
         self._step: int | None = None
         self._game: int | None = None
@@ -94,7 +96,8 @@ class GamePicture:
             match event:
                 case GameBegun(_, number, state) | ResumedGame(_, number, _, state):
                     resumed = event.steps if isinstance(event, ResumedGame) else 0
-                    log.write(resumed_words(number, resumed) if resumed else begun_words(number))
+                    again = resumed_words(number, resumed, goes_on=self.goes_on)
+                    log.write(again if resumed else begun_words(number))
                     room = self._screen.query_one(RoomView)
                     room.say("")
                     room.put(state.place)

@@ -131,7 +131,7 @@ async def _play(
             workspace, supervision, world, games=games, teacher=teacher or setup.on_duty, past=past
         )
         screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
-        screen.control.goes_on = goes_on
+        screen.control.goes_on = screen.picture.goes_on = goes_on
         screen.control.admission = Admission(workspace, world)
         if cards and world.played_in != game_world.BENCH:  # the bench deals new ones
             world.cards.dealt.deal(cards)
