@@ -21,10 +21,13 @@ from tests.bench.people_simulation import MAP, ROOM, Drive
 __all__ = ["MAP", "ROOM", "drives"]
 
 
-def drives(scene: str, count: int, seed: int = 0) -> list[Drive]:
-    """Drive a number of times through a scene."""
+def drives(scene: str, count: int, seed: int = 0, first: int = 0) -> list[Drive]:
+    """Drive a number of times through a scene, from the `first` drive of the seed on."""
     number = list(SCENES).index(scene)
-    return [SCENES[scene](np.random.default_rng([seed, number, one])).run() for one in range(count)]
+    return [
+        SCENES[scene](np.random.default_rng([seed, number, one])).run()
+        for one in range(first, first + count)
+    ]
 
 
 def row(scene: str, found: Sequence[Drive]) -> str:
@@ -53,9 +56,10 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", help=f"of {', '.join(SCENES)}; default: all")
     parser.add_argument("--drives", type=int, default=60)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--first", type=int, default=0, help="the seed's first drive to run")
     options = parser.parse_args()
     for scene in options.scenes or SCENES:
-        print(row(scene, drives(scene, options.drives, options.seed)), flush=True)
+        print(row(scene, drives(scene, options.drives, options.seed, options.first)), flush=True)
 
 
 if __name__ == "__main__":
