@@ -13,6 +13,7 @@ from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST
 from tangy_hw.navigation.poses import wrap
 from tangy_profiles.room import load_room
+from tests.bench.lost_robots import in_room
 from tests.hw.raycast import Wheels, driven, look, room_sides, sides, tour
 
 ROOM = load_room()
@@ -135,6 +136,12 @@ class TestFinding:
                 settled = robot.localisation.update(counted, scan).settled
                 scans += 1
         assert settled and fewest <= scans <= most
+
+    @pytest.mark.slow
+    def test_scans_a_metre_apart_do_not_lead_to_a_wrong_place(self) -> None:
+        found = in_room(MAP, 2.5, tries=20, seed=11)
+        assert found.wrong == found.never == found.wrong_looks == 0
+        assert np.median(found.metres) < 8.0
 
     @pytest.mark.slow
     @pytest.mark.parametrize("seed", [20, 21])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, pi
+from math import hypot, inf, pi
 
 import numpy as np
 import pytest
@@ -14,7 +14,9 @@ from tangy_hw.navigation.likelihood import IN_CACHE, LikelihoodField, thin
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.pose_search import Search
-from tangy_hw.navigation.poses import compose, relative_pose, wrap
+from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
+from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
+from tangy_hw.navigation.recent_scans import RecentScans
 from tangy_hw.navigation.scan_matching import Reference
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_profiles.room import load_room
@@ -124,6 +126,69 @@ class TestSearch:
         poses, scores = Search(MAP, field, rng).places(points, 32, 600, last)
         x, y, heading = poses[scores.argmax()]
         assert hypot(x - START.x, y - START.y) < 0.1 and abs(wrap(heading - START.heading)) < 0.1
+
+    def test_the_true_pose_is_among_the_best_ones_anywhere_in_the_room(self) -> None:
+        field, rng = LikelihoodField(MAP), np.random.default_rng(0)
+        search, found = Search(MAP, field, rng), 0
+        for seed in range(20):
+            x, y, heading = np.random.default_rng(seed).uniform((1, 1, -pi), (9, 4, pi))
+            points = thin(look(SIDES, Pose(x, y, heading)), 20.0)
+            poses, _ = search.places(points, 16, 3000, None)
+            off = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
+            found += bool(((off < 0.2) & (np.abs(wrap(poses[:, 2] - heading)) < 0.1)).any())
+        assert found >= 19
+
+
+class TestRecentScans:
+    OPPOSITE = Pose(ROOM.width, ROOM.depth, pi)  # turned by half, the walls look the same
+
+    def compared(self, steps: int, *, swapped: bool = False) -> tuple[float, Pose, Pose, Pose]:
+        """Drive; return the lead, the best other place, the true pose, and the opposite one."""
+        rng = np.random.default_rng(3)
+        recent, true, wheels = RecentScans(LikelihoodField(MAP), rng), START, Wheels(rng)
+        for number in range(steps):
+            points = thin(look(SIDES, true, rng), 20.0)
+            opposite = compose(self.OPPOSITE, true)
+            here, other = (opposite, true) if swapped else (true, opposite)
+            recent.note(wheels.pose, points, np.array([other]), np.array([0.9]))
+            lead, rival = recent.compare(here, wheels.pose, points)
+            if number < steps - 1:
+                true = driven(true, Twist(0.5, 0.1), 1.0)
+                wheels.turn(Twist(0.5, 0.1), 1.0)
+        return lead, rival, true, opposite
+
+    def test_the_scans_of_a_way_support_the_true_pose_more_than_its_mirror_image(self) -> None:
+        lead, rival, _, opposite = self.compared(FEWEST_SCANS)
+        assert lead > 0.1
+        assert hypot(rival.x - opposite.x, rival.y - opposite.y) < 0.3
+
+    def test_the_mirror_image_loses_and_the_true_pose_is_told(self) -> None:
+        lead, rival, true, _ = self.compared(FEWEST_SCANS, swapped=True)
+        assert lead < -0.1
+        assert hypot(rival.x - true.x, rival.y - true.y) < 0.3
+
+    def test_few_scans_do_not_tell_two_places_apart(self) -> None:
+        lead, rival, true, _ = self.compared(FEWEST_SCANS - 1)
+        assert lead == -inf and rival == true
+
+    def test_scans_at_one_place_count_as_one(self) -> None:
+        rng = np.random.default_rng(3)
+        recent = RecentScans(LikelihoodField(MAP), rng)
+        for _ in range(2 * FEWEST_SCANS):
+            points = thin(look(SIDES, START, rng), 20.0)
+            lead, _pose = recent.compare(START, IDENTITY, points)
+        assert lead == -inf
+
+    def test_forgotten_scans_do_not_count(self) -> None:
+        rng = np.random.default_rng(3)
+        recent, true = RecentScans(LikelihoodField(MAP), rng), START
+        for number in range(2 * FEWEST_SCANS):
+            if number == FEWEST_SCANS + 1:
+                recent.forget()
+            points = thin(look(SIDES, true, rng), 20.0)
+            lead, _pose = recent.compare(true, true, points)
+            true = driven(true, Twist(0.5, 0.1), 1.0)
+        assert lead == -inf
 
 
 class TestMatching:

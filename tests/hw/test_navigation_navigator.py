@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from tangy_hw.device_protocols import STILL, Odometry, Pose
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
 from tests.hw.navigated import FRONT, MAP, ROOM, DrivenRobot, at_seat
@@ -192,6 +192,15 @@ class TestLateBase:
         limits = MotionLimits()
         told = commands_to_a_late_base(seconds=4.0, moves=False)
         assert 0 < max(told) <= limits.acceleration * (limits.latency + 0.1) + 1e-9
+
+    @pytest.mark.parametrize("side", [-1, 1])
+    def test_a_turn_grows_as_far_as_the_base_can_have_come_since_it_was_measured(
+        self, side: int
+    ) -> None:
+        limits = MotionLimits(turn_acceleration=2.0, latency=0.1)
+        for told, measured, reached in ((0.9, 0.3, 0.5), (0.4, 0.3, 0.4), (0.1, 0.3, 0.3)):
+            twist = limits.reached(Twist(0.0, side * told), Twist(0.0, side * measured))
+            assert twist == pytest.approx(Twist(0.0, reached))
 
 
 def commands_to_a_late_base(seconds: float, *, moves: bool = True) -> list[float]:

@@ -26,10 +26,14 @@ WALL = 15  # connected cells that make a wall; chairs have fewer, and move
 
 def thin(scan: Scan, farthest: float, laser: Pose = IDENTITY, beams: int = BEAMS) -> Floats:
     """Return the ends (n, 2), in m, of at most `beams` beams with a return, evenly spaced."""
-    points = endpoints(scan, farthest, laser, NEAREST)
-    if len(points) <= beams:
+    return evenly(endpoints(scan, farthest, laser, NEAREST), beams)
+
+
+def evenly(points: Floats, most: int) -> Floats:
+    """Return at most so many of the points (n, 2), evenly spaced."""
+    if len(points) <= most:
         return points
-    return points[np.linspace(0, len(points) - 1, beams).round().astype(np.intp)]
+    return points[np.linspace(0, len(points) - 1, most).round().astype(np.intp)]
 
 
 def covered(scan: Scan) -> bool:

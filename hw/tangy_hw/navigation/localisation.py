@@ -2,7 +2,8 @@
 
 Particles move with the odometry, are weighted by the fit of the scan to a likelihood field, and
 resampled. A fast and a slow average of the fit detect a kidnapped robot: while the fast average is
-much lower, some particles are drawn again where the scan fits.
+much lower, some particles are drawn again where the scan fits. A place is believed after some scans
+that fit, if they support it more than any other place that a search of the whole map finds.
 """
 
 from __future__ import annotations
@@ -16,9 +17,19 @@ from numpy.random import Generator
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
+from tangy_hw.navigation.particles import (
+    FEWEST,
+    MOST,
+    around,
+    likeliest,
+    move,
+    near,
+    needed,
+    resample,
+)
 from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import IDENTITY, Floats, compose, relative_pose, wrap
+from tangy_hw.navigation.recent_scans import RecentScans
 
 LOST = 0.85  # of the usual fit: below this the estimated pose is probably wrong
 WIDE = 0.5  # metres of spread above which several places are possible
@@ -35,10 +46,11 @@ SEEN = 0.2  # share of beams that the map must explain or contradict
 BLIND = 0.02  # odometry noise without scans: the squared error for each squared unit moved
 GENTLE = 0.15  # factor on SHARPNESS while several places are possible
 EVERY = 120  # beams used while several places are possible: few beams tell them apart
-SETTLING = 15.0  # scans with a good fit at one place before it is believed
+SETTLING, AGAIN = 9.0, 5.0  # scans with a good fit before a place is compared, and once more
+LEAD = 0.15  # by which recent scans must support it more than any other: see `RecentScans.compare`
 JUMP, PROOF = 0.5, 0.75  # metres of a jump that resets the fast fit, and the share it resets to
 FRESH = 0.1  # share of the particles drawn again until then
-FIRST_TRIED, TRIED, PLACES = 20_000, 1500, 32  # poses tried at first, later, and kept
+FIRST_TRIED, TRIED, PLACES = 5000, 3000, 16  # poses tried at first, later, and kept
 
 LATELY = 5  # searches for which the last settled pose may be near
 
@@ -89,6 +101,7 @@ class Localisation:
         self._laser = laser
         self._field = LikelihoodField(map_)
         self._search = Search(map_, self._field, rng)
+        self._recent = RecentScans(self._field, rng)
         self._odometry: Pose | None = None
         self._global = False
         self.place(start)
@@ -103,7 +116,9 @@ class Localisation:
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
         self._fast = self._slow = USUAL
         self._scans = BELIEF
-        self._unsettled = SETTLING if pose is None else 0.0
+        self._settled = pose is not None
+        self._unsettled = 0.0 if self._settled else SETTLING
+        self._recent.forget()
         self._searches = 0 if pose else LATELY
         self._odometry = None
         self._sum_up()
@@ -141,14 +156,14 @@ class Localisation:
             return self._told(here)
         self._odometry = odometry
         self._particles = move(self._particles, step, self._rng)
-        every = thin(scan, FARTHEST, self._laser, EVERY) if self._unsettled else points
+        every = thin(scan, FARTHEST, self._laser, EVERY) if not self._settled else points
         self._weigh(every)
         if not first and hypot(self._anchor.x - here.x, self._anchor.y - here.y) > JUMP:
             self._fast = min(self._fast, PROOF * self._slow)  # one of the two poses is wrong
         score = self._field.evidence(self._anchor, every).score
         steps = min(max(hypot(step.x, step.y) / MOVED, 1.0), WEIGHTIEST)
         self._note(score, steps, moved or first)
-        self._renew(every)
+        self._renew(odometry, every)
         return self._told(self._anchor)
 
     def _note(self, score: float, steps: float, moved: bool) -> None:
@@ -162,7 +177,8 @@ class Localisation:
         share = SLOW if doubtful else max(SLOW, 1 / self._scans)
         self._slow += share * (score - self._slow)
         if self._fast < LOST * self._slow:
-            self._unsettled = SETTLING
+            self._settled, self._unsettled = False, SETTLING
+            self._recent.forget()
         elif moved:
             self._unsettled = max(0.0, self._unsettled - steps)
 
@@ -170,7 +186,7 @@ class Localisation:
         scores = self._field.scores(self._particles, points)
         scores = np.where(self._field.on_floor(self._particles), scores, 0.1 * scores)
         # more than one scan must decide between places that look alike
-        weights = scores ** (SHARPNESS * GENTLE if self._unsettled else SHARPNESS)
+        weights = scores ** (SHARPNESS if self._settled else SHARPNESS * GENTLE)
         total = weights.sum()
         self._weights = weights / total if total > 0 else np.full(len(weights), 1 / len(weights))
         self._sum_up()
@@ -183,17 +199,27 @@ class Localisation:
         x, y = self._particles[:, 0] - self._anchor.x, self._particles[:, 1] - self._anchor.y
         return sqrt(float(self._weights @ (x * x + y * y)))
 
-    def _renew(self, points: Floats) -> None:
+    def _renew(self, odometry: Pose, points: Floats) -> None:
         """Resample; until the pose has settled, draw some particles again where the scan fits."""
         drawn = resample(self._particles, self._weights, len(self._particles), self._rng)
         count, renewed = needed(drawn), self._particles[:0]
-        if not self._unsettled:
+        if self._settled:
             self._searches = 0
+        elif not self._unsettled:
+            lead, rival = self._recent.compare(self._anchor, odometry, points)
+            self._settled = lead > LEAD
+            self._unsettled = 0.0 if self._settled else AGAIN
+            if self._settled:  # the comparison ruled out all other places
+                self._weights *= near(self._particles, self._anchor)
+                self._weights /= self._weights.sum()
+            elif rival != self._anchor and lead < -LEAD:
+                renewed = around(rival, START, count // 2, self._rng)
         else:
             tried = FIRST_TRIED if self._global else TRIED
             self._searches += 1
             last = self._anchor if self._searches <= LATELY else None
             places, scores = self._search.places(points, PLACES, tried, last)
+            self._recent.note(odometry, points, places, scores)
             weights = scores ** (SHARPNESS * GENTLE)
             share = 1.0 if self._global else max(FRESH, 1 - self._fast / (LOST * self._slow))
             fresh = int(min(1.0 if self._global else 0.5, share) * count)
@@ -212,5 +238,5 @@ class Localisation:
             self._spread,
             self._fast / self._slow,
             len(self._particles),
-            self._unsettled == 0,
+            self._settled,
         )

@@ -99,14 +99,20 @@ def mean(particles: Floats, weights: Floats) -> Pose:
     return Pose(float(x), float(y), heading)
 
 
+def near(particles: Floats, pose: Pose) -> NDArray[np.bool_]:
+    """Return which of the particles (n, 3) belong to the cluster around a pose."""
+    off = np.hypot(particles[:, 0] - pose.x, particles[:, 1] - pose.y)
+    turned = np.abs(wrap(particles[:, 2] - pose.heading))
+    return np.asarray((off < CLUSTER) & (turned < CLUSTER_ANGLE))
+
+
 def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
     """Return the mean of the most likely cluster of particles, and its covariance (3, 3)."""
     _, bins = np.unique(_bins(particles, BIN, pi / 6), return_inverse=True)
     inside = bins == np.argmax(np.bincount(bins, weights))
     guess = mean(particles[inside], weights[inside])
     for _ in range(2):
-        off = np.hypot(particles[:, 0] - guess.x, particles[:, 1] - guess.y)
-        inside = (off < CLUSTER) & (np.abs(wrap(particles[:, 2] - guess.heading)) < CLUSTER_ANGLE)
+        inside = near(particles, guess)
         if not inside.any():
             break
         guess = mean(particles[inside], weights[inside])

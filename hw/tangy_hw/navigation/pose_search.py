@@ -1,30 +1,42 @@
 """Global search for the poses at which a scan fits a map.
 
-Very many poses are scored in a likelihood field so broad that some of them are near enough; the
-best are then refined in the fine field. Without refinement, the right place could lose against a
-wrong one only because no tried pose was close enough.
+Very many poses are scored with a few beams in a field so broad that some of them are near enough.
+The best of them are refined, in narrower fields and with more beams, and fewer are kept each time.
+Without this, the right place would often be dropped because no tried pose was close enough: in a
+building of 400 m2 it is then among the poses in 1 of 8 searches, instead of in 9 of 10.
 """
 
 from __future__ import annotations
 
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.device_protocols import Pose
-from tangy_hw.navigation.likelihood import LikelihoodField
+from tangy_hw.navigation.likelihood import LikelihoodField, evenly
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.particles import anywhere, around, resample
+from tangy_hw.navigation.particles import anywhere, around
 from tangy_hw.navigation.poses import IDENTITY, Floats, wrap
 
-BROAD = 0.3  # metres: sigma of the broad field
-GLANCED = 60  # beams used until the poses are refined
-GLANCE = 12.0  # exponent on its scores
+BROAD, MIDDLE = 0.8, 0.3  # metres: sigmas of the broader fields
+GLANCED, GUESSED, LOOKED = 20, 30, 60  # beams used in the broad, the middle and the fine field
+GUESSES, CHOICES = 20, 65  # one of so many tried poses is refined in the middle and the fine field
 SHARE_NEAR = 0.2  # share of the poses that are tried near the last estimate
 NEAR = (0.5, 0.5, pi)  # m, m, rad: their standard deviations
-NUDGES = ((0.2, 0.15), (0.1, 0.07), (0.05, 0.03), (0.02, 0.015))  # deviations: metres, radians
-EACH = 12  # poses tried around each pose, for each of the nudges
+
+
+class Nudges(NamedTuple):
+    """Poses tried around each pose: how many, and their standard deviations in m and rad."""
+
+    each: int
+    metres: float
+    radians: float
+
+
+COARSE, FINE = Nudges(8, 0.3, 0.15), Nudges(8, 0.15, 0.1)
+FINEST = (Nudges(12, 0.05, 0.03), Nudges(12, 0.02, 0.015))
 
 
 class Search:
@@ -39,6 +51,7 @@ class Search:
             rng: the random generator.
         """
         self._fine = field
+        self._middle = LikelihoodField(map_, MIDDLE)
         self._broad = LikelihoodField(map_, BROAD)
         self._free = map_.free_points()
         self._resolution = map_.resolution
@@ -58,29 +71,39 @@ class Search:
         """
         near = around(last or IDENTITY, NEAR, int(SHARE_NEAR * tried) if last else 0, self._rng)
         far = anywhere(self._free, self._resolution, tried - len(near), self._rng)
-        drawn = np.vstack((near, far))
-        some = points[:: max(1, len(points) // GLANCED)]
-        weights = self._broad.scores(drawn, some) ** GLANCE
-        poses = resample(drawn, weights / weights.sum(), count, self._rng)
-        scores = self._fine.scores(poses, some)
-        for metres, radians in NUDGES:
-            poses, scores = self._nudged(poses, scores, some, metres, radians)
+        poses = np.vstack((near, far))
+        glance, guess, look = (evenly(points, beams) for beams in (GLANCED, GUESSED, LOOKED))
+        scores = self._broad.scores(poses, glance)
+        poses = _best(poses, scores, max(count, tried // GUESSES))
+        poses, scores = nudged(poses, guess, self._middle, COARSE, self._rng)
+        poses = _best(poses, scores, max(count, tried // CHOICES))
+        poses, scores = nudged(poses, look, self._fine, FINE, self._rng)
+        poses = _best(poses, scores, count)
+        for nudges in FINEST:
+            poses, _ = nudged(poses, look, self._fine, nudges, self._rng)
         return poses, self._fine.scores(poses, points)
 
     def anywhere(self, count: int) -> Floats:
         """Return random poses (count, 3) on the free floor."""
         return anywhere(self._free, self._resolution, count, self._rng)
 
-    def _nudged(
-        self, poses: Floats, scores: Floats, points: Floats, metres: float, radians: float
-    ) -> tuple[Floats, Floats]:
-        """Return the best of random poses around each pose, or the pose itself."""
-        nudges = self._rng.normal(0.0, 1.0, (len(poses), EACH, 3)) * (metres, metres, radians)
-        nudged = (poses[:, None] + nudges).reshape(-1, 3)
-        fits = self._fine.scores(nudged, points).reshape(len(poses), EACH)
-        best = fits.argmax(axis=1)
-        chosen = nudged.reshape(len(poses), EACH, 3)[np.arange(len(poses)), best]
-        better = fits.max(axis=1) > scores
-        moved = np.where(better[:, None], chosen, poses)
-        moved[:, 2] = wrap(moved[:, 2])
-        return moved, np.maximum(fits.max(axis=1), scores)
+
+def nudged(
+    poses: Floats, points: Floats, field: LikelihoodField, nudges: Nudges, rng: Generator
+) -> tuple[Floats, Floats]:
+    """Return the best of random poses around each of the poses (n, 3), or itself; with scores."""
+    deviations = nudges.metres, nudges.metres, nudges.radians
+    tried = poses[:, None] + rng.standard_normal((len(poses), nudges.each, 3)) * deviations
+    tried = np.concatenate((poses[:, None], tried), axis=1)
+    fits = field.scores(tried.reshape(-1, 3), points).reshape(len(poses), nudges.each + 1)
+    rows, best = np.arange(len(poses)), fits.argmax(axis=1)
+    chosen = tried[rows, best]
+    chosen[:, 2] = wrap(chosen[:, 2])
+    return chosen, fits[rows, best]
+
+
+def _best(poses: Floats, scores: Floats, count: int) -> Floats:
+    """Return the `count` poses with the highest scores."""
+    if count >= len(poses):
+        return poses
+    return np.asarray(poses[np.argpartition(-scores, count)[:count]])

@@ -1,0 +1,113 @@
+"""How well the scans of the last metres support a pose, compared with other poses.
+
+One scan often fits at several places that look alike; those of a way of several metres seldom do.
+A pose is followed back along the odometry, and refined at each scan, because the odometry drifts.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from math import hypot, inf, log
+
+import numpy as np
+from numpy.random import Generator
+
+from tangy_hw.device_protocols import Pose
+from tangy_hw.navigation.likelihood import FLOOR, LikelihoodField, evenly
+from tangy_hw.navigation.particles import move
+from tangy_hw.navigation.pose_search import Nudges, nudged
+from tangy_hw.navigation.poses import IDENTITY, Floats, relative_pose, wrap
+
+APART, TURN_APART = 0.3, 0.3  # metres or radians between two scans that are kept
+FEWEST, KEPT = 6, 12  # scans needed to compare places, and scans kept
+BEAMS = 60  # of each scan
+PLACES = 16  # other places that are followed
+ELSEWHERE = 0.6  # metres or radians between two places that contradict each other
+ALONG = Nudges(8, 0.08, 0.05)  # for a place that is followed
+BY_CHANCE = 0.03  # by which each scan for itself may fit better elsewhere than at the right place
+NOWHERE, NOTHING = np.zeros((0, 3)), np.zeros(0)
+BACK = (Nudges(12, 0.1, 0.08), Nudges(12, 0.03, 0.025))  # for a pose that is followed back
+
+
+class RecentScans:
+    """The last scans, some way apart, and the places at which they fit."""
+
+    def __init__(self, field: LikelihoodField, rng: Generator) -> None:
+        self._field = field
+        self._rng = rng
+        self._kept: deque[tuple[Pose, Floats, float]] = deque(maxlen=KEPT)
+        self._odometry = IDENTITY
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget everything: the odometry may have been wrong, or the robot was carried."""
+        self._kept.clear()
+        self._places = NOWHERE
+
+    def note(
+        self, odometry: Pose, points: Floats, places: Floats = NOWHERE, scores: Floats = NOTHING
+    ) -> None:
+        """Take a scan, and follow the places at which the scans fit.
+
+        Args:
+            odometry: pose by odometry.
+            points: ends of the beams (n, 2) in the robot's frame.
+            places: more poses (m, 3) at which the scan fits.
+            scores: their scores (m,).
+        """
+        points = evenly(points, BEAMS)
+        followed = self._moved(self._places, self._odometry, odometry)
+        followed, fits = nudged(followed, points, self._field, ALONG, self._rng)
+        self._odometry = odometry
+        order = np.argsort(-np.concatenate((fits, scores)))
+        self._places = _distinct(np.vstack((followed, places))[order], PLACES)
+        if self._kept:
+            step = relative_pose(self._kept[-1][0], odometry)
+            if hypot(step.x, step.y) < APART and abs(step.heading) < TURN_APART:
+                return
+        best = max(fits.max(initial=FLOOR), scores.max(initial=FLOOR))
+        self._kept.append((odometry, points, log(best)))
+
+    def compare(self, pose: Pose, odometry: Pose, points: Floats) -> tuple[float, Pose]:
+        """Take a scan; return a pose's lead over other places, and the best of these.
+
+        The lead is by how much the scans support the pose more: the sum over the scans of the
+        differences between the logarithms of the fits. It is `inf` if they fit nowhere else, and
+        `-inf`, with the pose itself, while they are too few to say.
+
+        Args:
+            pose: the pose that may be believed, in m and rad.
+            odometry: pose by odometry.
+            points: ends of the beams (n, 2) in the robot's frame.
+        """
+        self.note(odometry, points)
+        poses = _distinct(np.vstack((np.asarray([pose]), self._places)), PLACES + 1)
+        if len(self._kept) < FEWEST:
+            return -inf, pose
+        if len(poses) == 1:
+            return inf, pose
+        there, support, anywhere, now = poses, np.zeros(len(poses)), 0.0, odometry
+        for then, seen, best in reversed(self._kept):
+            there, now = self._moved(there, now, then), then
+            for nudges in BACK:
+                there, fits = nudged(there, seen, self._field, nudges, self._rng)
+            support += np.log(fits)
+            anywhere += best - BY_CHANCE
+        rival = 1 + int(support[1:].argmax())
+        return float(support[0] - max(support[rival], anywhere)), Pose(*poses[rival])
+
+    def _moved(self, poses: Floats, start: Pose, end: Pose) -> Floats:
+        """Return where poses (n, 3) are after the way between two poses by odometry."""
+        return move(poses, relative_pose(start, end), self._rng, alpha=0.0)
+
+
+def _distinct(poses: Floats, most: int) -> Floats:
+    """Return the first `most` of the poses (n, 3) that contradict each other."""
+    chosen: list[Floats] = []
+    while len(poses) and len(chosen) < most:
+        first, poses = poses[0], poses[1:]
+        chosen.append(first)
+        off = poses - first
+        away = np.hypot(off[:, 0], off[:, 1]) > ELSEWHERE
+        poses = poses[away | (np.abs(wrap(off[:, 2])) > ELSEWHERE)]
+    return np.array(chosen).reshape(-1, 3)
