@@ -75,6 +75,7 @@ class EndingGames:
         if not self.robot.go_to_front():
             return [StaffNote("not at front")]
         joins = self.admission.admit(command)
+        self.note("came", person=joins.about)
         self.supervision.interrupt()
         self.joined, self.goes_on, self.going = True, self.going, True
         return [joins]

@@ -6,10 +6,12 @@ from pathlib import Path
 
 from tangy_profiles.person import read_name
 from tangy_tui.app.choice_file import keep_choice, read_choice
-from tangy_tui.app.teacher_profile import teacher_name
+from tangy_tui.app.teacher_profile import login_name, read_profile
 
 FILE = "on_duty.toml"
 KEY = "name"
+STAFF = "staff"
+"""Stands for who is on duty if no name is known."""
 
 
 def on_duty(folder: Path) -> str:
@@ -18,7 +20,7 @@ def on_duty(folder: Path) -> str:
     Raises:
         TangyError: the file has a mistake.
     """
-    return read_choice(folder / FILE, KEY) or teacher_name(None, folder)
+    return read_choice(folder / FILE, KEY) or read_profile(folder).name or login_name(STAFF)
 
 
 def take_duty(folder: Path, name: str) -> str:

@@ -119,7 +119,8 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     (game,) = session.replays
     assert game.game.people == again.world.people and not log_problems(workspace.store)
     page, lines = session_page(session), list(session_lines(session))
-    assert any("Ada: Berta left" in line for line in lines) and "Berta left" in page
+    for done in ("came", "left"):
+        assert any(f"Ada: Berta {done}" in line for line in lines) and f"Berta {done}" in page
     joined = [e.record for e in workspace.store.events(GameChange) if e.record.what == "joined"]
     assert [(one.person, one.by) for one in joined] == [("user5", "Ada")]
     assert not list(workspace.store.events(GameEnding))
