@@ -72,6 +72,8 @@ async def play_live(
 
     workspace = program.workspace
     setup = SetUp.of(workspace, pace)
+    if past is not None:  # the set-up has seated people as they sat when the game began
+        workspace.gather(past.beginning.people)
     played = await _play(
         program, opening, policy, games=games, seed=seed, teacher=teacher, past=past,
         setup=setup, set_up=set_up,
