@@ -35,6 +35,13 @@ Variable = Literal[
 """Features that a behaviour can change, for learning and comparing its effects."""
 VARIABLES: tuple[Variable, ...] = get_args(Variable)
 
+Progress = Literal["on", "waits", "none", "back"]
+"""Where a behaviour led a game.
+
+On; nowhere, but time alone will change the situation; nowhere; or back to a state in which the game
+has been since people last did something.
+"""
+
 
 LARGEST_STEP = 10**12
 """An upper bound of the steps of a game."""
@@ -179,5 +186,5 @@ class Outcome(NamedTuple):
     image: str = ""
     unclear: tuple[UnclearAnswer, ...] = ()
     """The answers that were not judged, in order."""
-    led_on: bool = False
-    """Whether the behaviour itself changed facts of the game, even if people changed them back."""
+    progress: Progress | None = None
+    """Where it led the game, people's acts included; None if only the states can tell."""

@@ -43,8 +43,7 @@ class Contradictions:
         """
         situation, behaviour = now.step.state.situation, now.step.behaviour
         self._add(now)
-        said = self._settled.get(situation)
-        if said is not None and behaviour in said.right:
+        if self.called_right(situation, behaviour):
             return None
         others = [
             steps[-1]
@@ -65,6 +64,11 @@ class Contradictions:
         answers = self._shown.get(situation, {})
         shown = [behaviour for behaviour, steps in answers.items() if steps]
         return tuple(sorted(shown, key=lambda behaviour: -len(answers[behaviour])))
+
+    def called_right(self, situation: Situation, behaviour: str) -> bool:
+        """Return whether a teacher has called a behaviour right in a situation."""
+        said = self._settled.get(situation)
+        return said is not None and behaviour in said.right
 
     def resolved(self, situation: Situation, right: tuple[str, ...], *, keep: bool) -> Resolution:
         """Return the resolution that makes these answers right.

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.game_records import Mismatch as Mismatch
-from tangy_profiles.state import FRONT, ActivityState, Variable
+from tangy_profiles.state import FRONT, ActivityState, Outcome, Progress, Variable
 from tangy_tui.learning.conflicts import Resolution, joined
 
 
@@ -130,6 +130,15 @@ def transition(
     gone = sum(after.user(id).request == "ANR" for id in waiting)
     changes["others' requests"] = who_waits(gone, len(waiting))
     return changes
+
+
+def progress(before: ActivityState, outcome: Outcome, after: ActivityState) -> Progress:
+    """Return where a step led the game; if the world cannot tell, by the states."""
+    if outcome.progress is not None:
+        return outcome.progress
+    alike = after._replace(step=before.step, closed=before.closed) == before
+    called = before.attended is None and bool(outcome.numbers)
+    return "none" if alike and not called else "on"
 
 
 def who_waits(gone: int, waiting: int) -> str:

@@ -1,8 +1,8 @@
 """Remarks about a teacher's possible mistakes, each made once and immediately.
 
-They report a step that contradicts an earlier one, a skipped stage, a person who did not ask, and a
-game that ends too early. The teacher who knows the right answer may have left by the time Tangy
-learns from the demonstrations.
+They report a step that contradicts an earlier one, a skipped stage, a person who did not ask, a
+step that changed nothing, and a game that ends too early. The teacher who knows the right answer
+may have left by the time Tangy learns from the demonstrations.
 """
 
 from __future__ import annotations
@@ -13,17 +13,19 @@ from tangy_profiles.activity import Activity, StageRule
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.demonstration import Step
 from tangy_profiles.effects import Effect
-from tangy_profiles.state import FRONT, Situation
+from tangy_profiles.state import FRONT, Outcome, Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.contradictions import Contradictions
 from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.effects import progress
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.own_phrases import OwnPhrases
 from tangy_tui.learning.teaching_events import (
     Contradicted,
     EndedEarly,
     NewWording,
+    NothingChanged,
     Overlooked,
     Remark,
     RemarkAnswer,
@@ -31,7 +33,7 @@ from tangy_tui.learning.teaching_events import (
     WrongPerson,
 )
 
-Kind = Literal["stage", "person", "end"]
+Kind = Literal["stage", "person", "end", "nothing"]
 
 
 def answers_to(remark: Remark) -> tuple[RemarkAnswer, ...]:
@@ -39,7 +41,7 @@ def answers_to(remark: Remark) -> tuple[RemarkAnswer, ...]:
     match remark:
         case Contradicted():
             return ("this", "earlier", "both", "undo")
-        case Overlooked():
+        case Overlooked() | NothingChanged():
             return ("undo", "this")
         case WrongPerson() | EndedEarly():
             return ("undo",)
@@ -83,11 +85,12 @@ class Remarks:
         """Discard the cache of earlier demonstrations, because one was deleted."""
         self._contradictions, self.open = None, None
 
-    def notice(self, shown: DemonstratedStep, *, over: bool) -> None:
+    def notice(self, shown: DemonstratedStep, outcome: Outcome, *, over: bool) -> None:
         """Check a step; a new remark about it becomes the open one.
 
         Args:
             shown: the step.
+            outcome: what the world returned for it.
             over: whether the game is over after it.
         """
         known = self.usual(shown.step.state.situation)
@@ -101,6 +104,8 @@ class Remarks:
             self.open = Contradicted(shown.number, shown.step, earlier, own)
         elif not known or self._goes(shown):
             self.open = overlooked if over else self._overlooked(shown, over=False)
+        if self.open is None and not over:
+            self.open = self._nothing_changed(shown, outcome)
         words = self.phrases.wording(shown.step.behaviour)
         if self.open is None and words:
             self.open = NewWording(shown.number, shown.step, words)
@@ -170,6 +175,21 @@ class Remarks:
         if not self._is_news("stage", state.situation):
             return None
         return Overlooked(shown.number, step, self._due(rule, shown))
+
+    def _nothing_changed(self, shown: DemonstratedStep, outcome: Outcome) -> Remark | None:
+        """Return the remark on a step that led nowhere, unless a person or a rule explains it."""
+        step, rules = shown.step, self._activity.stage_rules
+        led = progress(step.state, outcome, step.after)
+        counted = any(
+            step.behaviour in (r.behaviour, r.since) for r in rules if r.condition == "count"
+        )
+        if led in ("on", "waits") or outcome.response is not None or counted:
+            return None
+        if self._shown.called_right(step.state.situation, step.behaviour):
+            return None
+        if not self._is_news("nothing", step.state.situation):
+            return None
+        return NothingChanged(shown.number, step, led == "back")
 
     def _passes_over(self, rule: StageRule, behaviour: Behaviour, shown: DemonstratedStep) -> bool:
         """Return whether a behaviour skips the behaviour that is due in a stage."""

@@ -141,6 +141,15 @@ class EndedEarly:
 
 
 @dataclass(frozen=True, slots=True)
+class NothingChanged:
+    """Step `number` changed nothing; if `back`, it led back to where the game has been."""
+
+    number: int
+    step: Step
+    back: bool
+
+
+@dataclass(frozen=True, slots=True)
 class NewWording:
     """Step `number` followed spoken `words` that Tangy did not understand for certain."""
 
@@ -149,7 +158,9 @@ class NewWording:
     words: str
 
 
-Remark: TypeAlias = Contradicted | Overlooked | WrongPerson | EndedEarly | NewWording
+Remark: TypeAlias = (
+    Contradicted | Overlooked | WrongPerson | EndedEarly | NothingChanged | NewWording
+)
 """A remark about the newest step; the teacher answers or postpones it."""
 
 

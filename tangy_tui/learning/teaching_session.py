@@ -330,7 +330,7 @@ class TeachingSession:
         number, speech = len(self.demonstration.steps), speech or NOTHING_SAID
         events: list[TeachingEvent] = [Executed(number, step, action, outcome, speech, image)]
         shown = DemonstratedStep(self.demonstration.id, self.teacher, number, step)
-        self._remarks.notice(shown, over=finished)
+        self._remarks.notice(shown, outcome, over=finished)
         return [*events, Finished(self.demonstration)] if finished else events
 
     def _settle(self, answer: RemarkAnswer) -> list[TeachingEvent]:

@@ -29,7 +29,7 @@ from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome, Variable
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.observation import refused
-from tangy_tui.learning.effects import Effects, Mismatch, who_waits
+from tangy_tui.learning.effects import Effects, Mismatch, progress, who_waits
 
 OWED_BY_PEOPLE = ("what was asked about", "request")
 """Variables that stay unchanged if a person does not follow a request, which is no fault."""
@@ -257,10 +257,9 @@ class Detector:
             refused(acted.action.behaviour, before, outcome, after) or self._went_unseen(acted)
         ):
             self.refused(str(before.attended))
-        alike = after._replace(step=before.step, closed=before.closed) == before
-        called = before.attended is None and bool(outcome.numbers)
-        moved_on = called or outcome.led_on
-        self._fruitless = self._fruitless + 1 if alike and not moved_on else 0
+        led = progress(before, outcome, after)
+        if led != "waits":  # a step that waits for a timer leaves the count as it is
+            self._fruitless = 0 if led == "on" else self._fruitless + 1
 
 
 def _waiting(last: ActivityState, now: ActivityState) -> list[str]:

@@ -26,7 +26,7 @@ GUIDED = (
 
 
 ASKED = "What should Tangy do?"
-"""The coach's question if an activity's file describes the situation but gives no advice."""
+"""The coach's question if an activity's file gives no advice in a situation."""
 
 SAYABLE = "You can say now"
 
@@ -38,20 +38,30 @@ def sayable_now(commands: Sequence[str]) -> str:
 
 def coach_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
     """Describe the situation, suggest what a host might do, and add the relevant facts."""
-    asked = [ASKED] if isinstance(activity, DeclaredActivity) else []
     facts = _facts(activity, state, scene, name)
-    return " ".join([host_sentence(activity, state, name), *facts, *asked])
+    return " ".join([host_sentence(activity, state, name), *facts])
 
 
 def host_sentence(activity: Activity, state: ActivityState, name: Name) -> str:
     """Describe the situation and suggest what a host might do, in the words of the activity."""
     who = name(state.attended) if state.attended else "Somebody"
     if isinstance(activity, DeclaredActivity):
-        return f"{moment_words(activity, state, name)}."
+        return f"{moment_words(activity, state, name)}. {_advice(activity, state, name) or ASKED}"
     if said := activity.host_words(state.situation):
         return said.replace("{name}", who)
     rule = next(r for r in activity.stage_rules if r.stage == state.stage)
     return _by_rule(activity, rule, state.situation, who)
+
+
+def _advice(activity: DeclaredActivity, state: ActivityState, name: Name) -> str:
+    """Suggest what the activity's file expects of a host in a situation; "" if nothing."""
+    expected = activity.expectation(state.situation)
+    if expected is None:
+        return ""
+    to = activity.behaviours[expected.behaviour].to
+    person = dict(state.whom).get(expected.to or (to[0] if to else ""))
+    whom = f" ({name(person)})" if person is not None else ""
+    return f"A host might choose “{activity.behaviour_words(expected.behaviour)}”{whom}."
 
 
 def _by_rule(activity: Activity, rule: StageRule, situation: Situation, who: str) -> str:

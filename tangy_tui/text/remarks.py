@@ -10,18 +10,23 @@ from tangy_tui.learning.teaching_events import (
     Contradicted,
     EndedEarly,
     NewWording,
+    NothingChanged,
     Overlooked,
     Remark,
     RemarkAnswer,
     Settled,
     WrongPerson,
 )
+from tangy_tui.text.coach import host_sentence
 from tangy_tui.text.numbers import listed
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
 
 Name = Callable[[str], str]
+
+CHANGED_NOTHING = "That changed nothing, so Tangy would do it again and again."
+LED_BACK = "That led back to an earlier moment, so Tangy would go in circles."
 
 ANSWER_BY_LINE = "Type a number, or just go on: you can decide later."
 OR_NO = "Type 1 or no, or just go on."
@@ -62,10 +67,18 @@ def remark_words(remark: Remark, activity: Activity, name: Name, game: str = "")
             return f"{to} did not ask for help. {others}"
         case EndedEarly(lacks=lacks):
             return ended_early(activity, lacks)
+        case NothingChanged(step=step, back=back):
+            what = LED_BACK if back else CHANGED_NOTHING
+            return f"{what} {_sentence(host_sentence(activity, step.after, name))}"
         case NewWording(words=words):
             return f"You said “{words}”, which Tangy did not know. Does it mean: {done}?"
         case _:
             assert_never(remark)
+
+
+def _sentence(words: str) -> str:
+    """Begin with a capital letter."""
+    return words[:1].upper() + words[1:]
 
 
 def ended_early(activity: Activity, lacks: str) -> str:

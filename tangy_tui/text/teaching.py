@@ -16,6 +16,7 @@ from tangy_tui.learning.teaching_events import (
     Finished,
     NewWording,
     NoRule,
+    NothingChanged,
     Overlooked,
     RuleChoice,
     Ruled,
@@ -48,7 +49,14 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
                 f"{number}. {words}",
                 f"   Tangy says: {speech}",
             ]
-        case Contradicted() | Overlooked() | WrongPerson() | EndedEarly() | NewWording():
+        case (
+            Contradicted()
+            | Overlooked()
+            | WrongPerson()
+            | EndedEarly()
+            | NothingChanged()
+            | NewWording()
+        ):
             game = teaching.demonstration.id
             return remark_lines(event, teaching.activity, teaching.name, game)
         case Settled():

@@ -22,6 +22,7 @@ from tangy_tui.learning.teaching_events import (
     Finished,
     NewWording,
     NoRule,
+    NothingChanged,
     Overlooked,
     Remark,
     Ruled,
@@ -110,7 +111,14 @@ class TeachingPicture:
         match event:
             case Executed():
                 self.step(event)
-            case Contradicted() | Overlooked() | WrongPerson() | EndedEarly() | NewWording():
+            case (
+                Contradicted()
+                | Overlooked()
+                | WrongPerson()
+                | EndedEarly()
+                | NothingChanged()
+                | NewWording()
+            ):
                 if not asked:
                     self.remark(event)
             case Settled():

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tangy_profiles.activity import shipped_activities
 from tangy_profiles.teaching_records import DemonstrationsEdited, Settlement
 from tangy_tui.app.command_grammar import read_settling
 from tangy_tui.app.workspace import Workspace
@@ -17,6 +20,7 @@ from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import (
     Contradicted,
     EndedEarly,
+    NothingChanged,
     Overlooked,
     Remark,
     Settle,
@@ -29,7 +33,9 @@ from tangy_tui.learning.teaching_events import (
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 
-REMARKS = (Contradicted, Overlooked, WrongPerson, EndedEarly)
+REMARKS = (Contradicted, Overlooked, WrongPerson, EndedEarly, NothingChanged)
+
+DECLARED = sorted(set(shipped_activities()) - {"bingo"})
 
 
 @pytest.fixture
@@ -82,7 +88,7 @@ def unasked(teaching: TeachingSession) -> str:
     return f"go to user {number}"
 
 
-# ------------------------------------------------------------------ five kinds of wrong teaching
+# ------------------------------------------------------------------- six kinds of wrong teaching
 
 
 def test_a_skipped_stage_is_reported_once_with_its_behaviour(workspace: Workspace) -> None:
@@ -146,6 +152,79 @@ def test_an_early_end_is_reported_before_a_contradiction(workspace: Workspace) -
     assert teaching.world.observe().situation == situation
     (remark,) = do(teaching, "say goodbye")
     assert isinstance(remark, EndedEarly)
+
+
+def test_a_step_that_changes_nothing_is_reported_once(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    until(teaching, "end")
+    (remark,) = do(teaching, "celebrate")
+    assert isinstance(remark, NothingChanged)
+    assert not remark.back
+    assert do(teaching, *["celebrate"] * 9) == []
+
+
+@pytest.fixture
+def silent(tmp_path: Path) -> Iterator[Workspace]:
+    """A data folder, and trivia with people who never answer or ask."""
+    shipped = next(path for path in shipped_activities().values() if path.stem == "trivia")
+    shutil.copy(shipped.with_suffix(".csv"), tmp_path)
+    text = re.sub(r"chance = [0-9.]+", "chance = 0.0", shipped.read_text("utf-8"))
+    (tmp_path / "trivia.toml").write_text(text, "utf-8")
+    opened = Workspace(tmp_path / "data", activity=str(tmp_path / "trivia.toml"))
+    yield opened
+    opened.close()
+
+
+def clock(teaching: TeachingSession) -> str:
+    return dict(teaching.world.observe().facts)["clock"]
+
+
+def test_waiting_for_a_timer_is_no_useless_step_but_waiting_for_nothing_is(
+    silent: Workspace,
+) -> None:
+    teaching = session(silent)
+    assert do(teaching, "welcome everyone", "ask question") == []
+    while clock(teaching) == "<20":
+        assert do(teaching, "allow time") == []
+    (remark,) = do(teaching, "allow time")
+    assert isinstance(remark, NothingChanged)
+    assert not remark.back
+    assert do(teaching, *["allow time"] * 3) == []
+
+
+def test_steps_that_lead_back_to_where_the_game_was_are_reported(silent: Workspace) -> None:
+    teaching = session(silent)
+    do(teaching, "welcome everyone", "ask question", "give hint")
+    while clock(teaching) == "<20":
+        do(teaching, "allow time")
+    (remark,) = do(teaching, "give hint")
+    assert isinstance(remark, NothingChanged)
+    assert remark.back, "the timer starts anew, and all is as after the first hint"
+
+
+def test_a_useless_step_that_is_right_is_not_reported_again(silent: Workspace) -> None:
+    teaching = session(silent)
+    (remark,) = do(teaching, "welcome everyone", "ask question", "welcome everyone")[-1:]
+    assert isinstance(remark, NothingChanged)
+    teaching.apply(Settle("this"))
+    (said,) = read_library(silent.store, "trivia").resolutions
+    assert said.right == ("welcome everyone",)
+    another = session(silent, "Bea", 2)
+    assert do(another, "welcome everyone", "ask question", "welcome everyone") == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DECLARED)
+@pytest.mark.parametrize("guided", [False, True])
+def test_a_faultless_teacher_of_a_shipped_activity_gets_no_remark(
+    tmp_path: Path, name: str, guided: bool
+) -> None:
+    for seed in (1, 2, 3):
+        teaching = Workspace(tmp_path / str(seed), activity=name).teaching("A", seed, guided=guided)
+        teaching.begin(resume=False)
+        told = list(ScriptedTeacher(teaching).demonstrate())
+        assert teaching.demonstration.finished
+        assert remarks(told) == []
 
 
 @pytest.mark.parametrize("seed", range(1, 9))

@@ -124,9 +124,17 @@ def test_a_call_counts_as_progress_without_a_change_of_state(detector: Detector)
 
 def test_a_change_that_is_undone_at_once_counts_as_progress(detector: Detector) -> None:
     idle = acted("joke", QUIET)
-    led = replace(idle, outcome=idle.outcome._replace(led_on=True))
+    led = replace(idle, outcome=idle.outcome._replace(progress="on"))
     counted = [evidence(detector, step).get("visit.fruitless") for step in (idle, led, idle)]
     assert counted == [1, None, 1]
+
+
+def test_waiting_for_a_timer_does_not_count_and_a_step_back_does(detector: Detector) -> None:
+    moved = acted("joke", QUIET, changed=True)
+    waits = replace(moved, outcome=moved.outcome._replace(progress="waits"))
+    back = replace(moved, outcome=moved.outcome._replace(progress="back"))
+    counted = [evidence(detector, one).get("visit.fruitless") for one in (waits, back, waits, back)]
+    assert counted == [None, 1, 1, 2], "a step back counts, although it changed the state"
 
 
 def test_requested_numbers_do_not_count_as_progress(detector: Detector) -> None:

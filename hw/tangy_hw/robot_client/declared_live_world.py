@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.declared_tracker import DeclaredTracker
@@ -21,25 +21,18 @@ from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.lots import drawn_game
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import PAUSE_SECONDS
+from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.situation_words import words_now
 from tangy_profiles.declared.speech import again, media, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.defaults import ASK_AGAIN
-from tangy_profiles.past_game import (
-    FACTS_UNKNOWN,
-    OTHER_PEOPLE,
-    OTHERWISE,
-    NotResumable,
-    PastGame,
-)
+from tangy_profiles.past_game import FACTS_UNKNOWN, OTHER_PEOPLE, OTHERWISE, NotResumable, PastGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState, Outcome, Response, UnclearAnswer
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from tangy_profiles.game_records import GameChange
 
 SIGN = "sign"
@@ -76,6 +69,7 @@ class DeclaredLiveWorld(LiveWorld):
         self.game = drawn_game(self.activity.declaration, self.people, self._order.random)
         for person in sorted(self.away):
             self.game.observe(HERE, person, NO)
+        self._progress = ProgressWatch(self.game)
         self.tracker = DeclaredTracker(self.activity, self.game)
         self._started = self.link.time
         self._did: dict[str, list[str]] = {}
@@ -214,7 +208,7 @@ class DeclaredLiveWorld(LiveWorld):
         name, game = action.behaviour.name, self.game
         whom = None if action.target in (None, EVERYBODY) else action.target
         game.now = self.link.time - self._started
-        before = game.copy()
+        self._progress.begin(game)
         speech = image = self.broken = ""
         response: Response | None = None
         done = Execution(False)
@@ -222,18 +216,20 @@ class DeclaredLiveWorld(LiveWorld):
             if game.allows(name, whom):
                 speech, image = self._perform(action, whom)
                 done = self._count(name, whom)
+                self._progress.done(game)
                 response = self._watch(done, action)
         except DeviceError as error:
             self.broken = str(error)
         if not done.completed:
             game.failed()
-        self.over, led_on = game.over, game.differs(before)
+        self.over = game.over
         self.commands.settle()
         if not self.broken and not self.over:
             self._let_people_act(name if done.completed else "", whom)
         seconds = max(0.0, self.link.time - began)
         unclear, self._not_clear = tuple(self._not_clear), []
-        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led_on)
+        led = self._progress.end(game)
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
         """Speak, show, gesture and drive; return speech and picture text.

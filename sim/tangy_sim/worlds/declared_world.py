@@ -19,6 +19,7 @@ from tangy_profiles.declared.game import Execution
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.lots import drawn_game
+from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.situation_words import value_words
 from tangy_profiles.declared.speech import again, media, words
@@ -94,6 +95,7 @@ class DeclaredWorld:
         self.game = drawn_game(self._declaration, self.people, self._items)
         for person in self.game_plan.absent:
             self.game.observe(HERE, person, NO)
+        self._progress = ProgressWatch(self.game)
         self.over = False
         self.happened: dict[str, list[Act]] = {}
         """People's actions after the last behaviour, in order; "" is the whole group."""
@@ -129,11 +131,12 @@ class DeclaredWorld:
         game = self.game
         if game.over:
             return Outcome(False, 0.0, (), None)
+        self._progress.begin(game)
         before, behaviour = game.copy(), action.behaviour.name
         pause = self._declaration.behaviours[behaviour].pause
         whom = None if action.target in (None, EVERYBODY) else action.target
         done = game.execute(behaviour, whom)
-        led_on = game.differs(before)
+        self._progress.done(game)
         speech, image = (
             words(self.game, before, action.behaviour.name, action.strategy, whom)
             if done.completed
@@ -151,8 +154,8 @@ class DeclaredWorld:
             if done.completed and whom is not None:
                 self._ask_silent(behaviour, whom)
         seconds += pause + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
-        unclear = tuple(self._not_clear)
-        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led_on)
+        unclear, led = tuple(self._not_clear), self._progress.end(self.game)
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led)
 
     def words_of(self, act: Act) -> str:
         """Describe what a person did, in the words of the file."""
