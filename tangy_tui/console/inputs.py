@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import re
 import sys
+from collections import deque
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
@@ -40,6 +43,32 @@ def line_reader(script: Path | None) -> Callable[[], str | None]:
     except (OSError, UnicodeDecodeError):
         raise TangyError(plain(f"{script}: cannot be read as text.")) from None
     return lambda: next(lines, None)
+
+
+class ReadAhead:
+    """Lines read in a thread of their own; games that follow each other share them."""
+
+    def __init__(self, read: Callable[[], str | None]) -> None:
+        """Set what blocks for the next line, and returns None at the end."""
+        self._read = read
+        self._begun = False
+        self.lines: SimpleQueue[str | None] = SimpleQueue()
+        """The lines read so far; None: there are no more."""
+        self.early = deque[str]()
+        """Lines that wait for Tangy to ask for its next action."""
+        self.ended = False
+        """Whether all lines were taken."""
+
+    def begin(self) -> None:
+        """Begin to read, unless it has begun."""
+        if not self._begun:
+            self._begun = True
+            Thread(target=self._read_all, daemon=True).start()
+
+    def _read_all(self) -> None:
+        while (line := self._read()) is not None:
+            self.lines.put(line)
+        self.lines.put(None)
 
 
 def is_typed(script: Path | None) -> bool:

@@ -33,7 +33,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.confirming import ConfirmingStaff
-from tangy_tui.console.inputs import any_waits
+from tangy_tui.console.inputs import ReadAhead, any_waits
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.console.script_waits import ScriptWaits
 from tangy_tui.console.typed_yes import TypedYes
@@ -75,6 +75,7 @@ class StaffLines:
         also: Callable[[Sequence[Event]], Sequence[str]] = lambda events: (),
         demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
         yes: TypedYes | None = None,
+        before: StaffLines | None = None,
     ) -> None:
         """Connect staff to games.
 
@@ -88,29 +89,30 @@ class StaffLines:
             also: is called with all events, and returns further lines to write.
             demonstrations: returns all demonstrations, to explain decisions.
             yes: parses a typed yes.
+            before: the games that a person has joined, whose lines are still being read.
         """
-        self._controller = controller
+        self._controller, self._name = controller, name
         self._game = controller.supervision
-        self._name = name
         self._read, self._speed, self._also = read, speed, also
         self._yes = yes or TypedYes()
         self._sure = ConfirmingStaff(controller, self._yes, self._write)
         self._waits = ScriptWaits(controller, self._tell_where_it_goes)
         self._inquiries = Inquiries(controller, name, demonstrations)
-        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._ahead: ReadAhead = ReadAhead(read) if before is None else before._ahead
         self._writing = threading.Lock()
         self._write_line = write
         self._prompted, self._going = "", ("", "", ("", tuple[str, ...]()))
-        self._alone = self._stopped = self._ended = self._by_turns = False
+        self._stopped = self._ended = self._by_turns = False
+        self.played = 0
         self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
         self._tasks: queue.Queue[Task | None] = queue.Queue()
         self._command = command_reader(self._game.world.activity, find_person)
 
     def run(self, games: int) -> bool:
-        """Play games; return whether all ended normally, or by staff's command."""
+        """Play, up to a game that somebody joins; return whether none stopped early."""
         prepare()
-        threading.Thread(target=self._read_all, daemon=True).start()
+        self._ahead.begin()
         working = threading.Thread(target=self._work_off, daemon=True)
         working.start()
         for _ in range(games):
@@ -125,9 +127,13 @@ class StaffLines:
             except BaseException:  # the program is ending
                 self._controller.abandon()
                 raise
+            if self._controller.joined:
+                break
+            self.played += 1
+            self._ahead.early.clear()
         self._tasks.put(None)
         working.join(WORKS_SECONDS)
-        return self._end()
+        return self._controller.joined or self._end()
 
     def run_by_turns(self, games: int, *, scripted: bool = False, expert: bool = False) -> bool:
         """Play games, reading a line only when Tangy waits; return as `run` does.
@@ -172,9 +178,9 @@ class StaffLines:
         """Play one game in its own thread."""
         controller, game = self._controller, self._game
         while not (events := controller.begin()):  # staff stopped the robot between two games
-            if self._alone or self._leaves:
-                self._write(staff_lines.NOBODY if self._alone else staff_lines.NOT_BEGUN)
-                self._stopped |= self._alone
+            if self._ahead.ended or self._leaves:
+                self._write(staff_lines.NOBODY if self._ahead.ended else staff_lines.NOT_BEGUN)
+                self._stopped |= self._ahead.ended
                 return
             controller.nudge.wait(LOOK_SECONDS)
         self._tell(events)
@@ -189,7 +195,7 @@ class StaffLines:
             self._tell(events)
             self._prompt()
             busy = self._tasks.unfinished_tasks
-            if self._alone and not busy and controller.phase not in ("running", "idle"):
+            if self._ahead.ended and not busy and controller.phase not in ("running", "idle"):
                 self._write(staff_lines.NOBODY)
                 self._tell(controller.give_up() or controller.apply(EndGame()))
             passed = 0.0 if self._speed is None else (game.seconds - before) / self._speed
@@ -219,7 +225,8 @@ class StaffLines:
                 events.append(one)
                 broken_off = isinstance(one, GameEnded) and one.stopped is not None
                 self._stopped |= broken_off and not self._ended
-                self._write_all(game_lines(one, self._game, self._name, answered))
+                on = self._controller.goes_on
+                self._write_all(game_lines(one, self._game, self._name, answered, goes_on=on))
         self._write_all(filter(None, self._also(events)))
 
     def _write(self, line: str) -> None:
@@ -232,36 +239,31 @@ class StaffLines:
 
     # ----------------------------------------------------------------------------- the lines
 
-    def _read_all(self) -> None:
-        while (line := self._read()) is not None:
-            self._lines.put(line)
-        self._lines.put(None)
-
     def _take_lines(self, playing: threading.Thread) -> None:
         """Handle lines while a game runs. Until it has begun, only a STOP is handled at once.
 
         In a script with waits, a STOP comes in its order. Lines for Tangy's next action are kept
         until Tangy asks for it.
         """
-        early: deque[str] = deque()
+        early = self._ahead.early
         while playing.is_alive():
             self._tell_where_it_goes()
             if early and self._begun.is_set() and not self._controller.taking_over:
                 self._take_or_wait(early.popleft(), playing)
                 continue
-            if self._alone:
+            if self._ahead.ended:
                 if self._begun.wait(LOOK_SECONDS):
                     playing.join(LOOK_SECONDS)  # a longer wait could delay a signal
                 continue
             try:
-                line = self._lines.get(timeout=LOOK_SECONDS)
+                line = self._ahead.lines.get(timeout=LOOK_SECONDS)
             except queue.Empty:
                 continue
             if line is None:
                 self._sure.drop()
-                self._alone = not early
+                self._ahead.ended = not early
                 if early:  # handle them first
-                    self._lines.put(None)
+                    self._ahead.lines.put(None)
                     time.sleep(LOOK_SECONDS)
                 elif self._controller.phase in ("idle", "running"):
                     self._write(staff_lines.NO_MORE)
@@ -282,7 +284,7 @@ class StaffLines:
             self._going = going
             if words := waiting_words(*going, self._game.world.activity.object, self._name):
                 self._write(words)
-        if self._alone and going[2][0]:
+        if self._ahead.ended and going[2][0]:
             self._tell([*self._controller.apply(EndGame())])
 
     def _is_due(self, line: str, early: deque[str]) -> bool:
@@ -330,7 +332,7 @@ class StaffLines:
     @property
     def _typed(self) -> queue.SimpleQueue[str | None] | None:
         """The lines read ahead; None if each line is read when it is due."""
-        return None if self._by_turns else self._lines
+        return None if self._by_turns else self._ahead.lines
 
     def _carry_out(self, command: GameCommand) -> None:
         """Carry out a command now, or queue it for its turn while lines are read."""

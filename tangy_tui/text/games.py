@@ -47,14 +47,29 @@ SENSORS = "Show the sensors, and what cameras see"
 """The names of the number keys' actions."""
 
 
-def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str = "") -> list[str]:
-    """Describe one event of a game in lines; `teacher` is who answered Tangy's question."""
+def game_lines(
+    event: Event,
+    supervision: Supervision,
+    name: Name,
+    teacher: str = "",
+    *,
+    goes_on: bool = False,
+) -> list[str]:
+    """Describe one event of a game in lines.
+
+    Args:
+        event: the event.
+        supervision: runs the game.
+        name: returns a person's name for an id.
+        teacher: who answered Tangy's question.
+        goes_on: whether a resumed game continues at once.
+    """
     activity = supervision.world.activity
     match event:
         case GameBegun(_, number, _):
             return [f"Game {number} begins."]
         case ResumedGame(_, number, steps, _):
-            return [resumed_words(number, steps)]
+            return [resumed_words(number, steps, goes_on=goes_on)]
         case Acted(number, state, decision, choice, action, outcome, _, speech):
             target = addressed_words(supervision.policy, action, state, name)
             how = f", {choice.strategy}" if choice else ""

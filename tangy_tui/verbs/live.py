@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -32,7 +33,6 @@ from tangy_tui.verbs.playing import (
     Teacher,
     check_injections,
     list_injections,
-    play_with_staff,
     recall,
     tell_small_room,
     who_answers,
@@ -41,6 +41,7 @@ from tangy_tui.verbs.resuming import Discard, Resume, past_game
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_sim.worlds.injection import Injection
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.app.robot_opening import WorldOpening
@@ -166,6 +167,7 @@ def live(
     with (
         machine_load(load),
         open_workspace(data, activity, users, robot=robot, room=room) as workspace,
+        ExitStack() as stack,
     ):
         need_policy(workspace.store, workspace.activity, policy)
         if by:
@@ -233,15 +235,23 @@ def live(
             print(SWITCHING_ON, file=sys.stderr)
         from tangy_tui.app.live_games import LiveGames
         from tangy_tui.app.switching_on import switched_on
+        from tangy_tui.console.typed_lines import typed_lines
+        from tangy_tui.verbs.live_lines import LiveLines
+
+        console: LiveLines | None = None
 
         def tell(part: str) -> None:
             if plain_lines:
                 print(plain(f"  {part_words(part, workspace.robot)} ..."), file=sys.stderr)
 
+        def tell_screen(world: LiveWorld) -> None:
+            if world.link.screen:
+                print(plain(screen_words(world.link.screen, world.link.code)), file=sys.stderr)
+
         stepped = bench and not plain_lines and link is None  # a delay takes real time
         with switched_on(switched, stepped=stepped, tell=tell) as there:
-            if not as_json and (plain_lines or not bench) and there.link.screen:
-                print(plain(screen_words(there.link.screen, there.link.code)), file=sys.stderr)
+            if not as_json and (plain_lines or not bench):
+                tell_screen(there)
             told_missing = missing_words(workspace.robot, workspace.activity)
             for told in [] if as_json or lines is not None else told_missing:
                 print(plain(told), file=sys.stderr)  # the set-up has told it in console mode
@@ -257,13 +267,20 @@ def live(
                 learnt, number, asks=asks, world=there, rehearsal=rehearsal
             )
             if plain_lines:
+                typed = stack.enter_context(typed_lines(common.print_line))
                 who = who if teacher is not None else on_duty(workspace.store.folder)
-                to_their_end = play_with_staff(
-                    workspace, supervision, games, who, robot=there, past=past
-                )
+                console = LiveLines(workspace, games, who, typed)
+                to_their_end = console.play(supervision, there, past)
             else:
                 played = LiveGames(workspace, supervision, past)
                 to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
+        while console is not None and console.joined:
+            with switched_on(opening(number), stepped=stepped, tell=tell) as there:
+                tell_screen(there)
+                supervision = workspace.supervision(
+                    console.policy, number, asks=asks, world=there, rehearsal=rehearsal
+                )
+                to_their_end = console.play(supervision, there)
         if not to_their_end:
             raise typer.Exit(1)  # so that a script knows that games stopped early
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.past_game import PastGame
     from tangy_sim.worlds.injection import Injection
+    from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.console.typed_lines import TypedLines
@@ -135,27 +136,23 @@ def play_with_staff(
     games: int,
     teacher: str,
     *,
-    robot: LiveWorld | None = None,
     speed: float | None = None,
     past: PastGame | None = None,
 ) -> bool:
-    """Play games with staff at standard input; return whether none stopped early.
+    """Play simulated games with staff at standard input; return whether none stopped early.
 
     Args:
         workspace: the workspace of the games.
         supervision: runs the games.
         games: the number of games.
         teacher: who types.
-        robot: the world of a real robot.
-        speed: a ratio to real time, for simulated games.
+        speed: a ratio to real time.
         past: an interrupted game to resume first.
     """
     from tangy_tui.console.typed_lines import typed_lines
 
     with typed_lines(print_line) as typed:
-        lines = _lines(
-            workspace, supervision, teacher, robot=robot, speed=speed, past=past, typed=typed
-        )
+        _, lines = staff_lines(workspace, supervision, teacher, speed=speed, past=past, typed=typed)
         return lines.run(games)
 
 
@@ -179,11 +176,11 @@ def play_by_turns(
         past: an interrupted game to resume first.
     """
     scripted = teacher == SCRIPTED
-    lines = _lines(workspace, supervision, teacher, past=past)
+    _, lines = staff_lines(workspace, supervision, teacher, past=past)
     lines.run_by_turns(games, scripted=scripted, expert=expert)
 
 
-def _lines(
+def staff_lines(
     workspace: Workspace,
     supervision: Supervision,
     teacher: str,
@@ -192,7 +189,20 @@ def _lines(
     speed: float | None = None,
     past: PastGame | None = None,
     typed: TypedLines | None = None,
-) -> StaffLines:
+    before: StaffLines | None = None,
+) -> tuple[GameController, StaffLines]:
+    """Return the controller of games, and what connects it to staff at the lines.
+
+    Args:
+        workspace: the workspace of the games.
+        supervision: runs the games.
+        teacher: who types.
+        robot: the world of a real robot.
+        speed: a ratio to real time, for simulated games.
+        past: an interrupted game to resume first.
+        typed: the lines of a terminal.
+        before: the games that a person has joined, whose lines are still being read.
+    """
     from tangy_tui.app.freeze_watch import FreezeGuard
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
@@ -224,7 +234,7 @@ def _lines(
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
     workspace.door.attach(control, lambda who: write(stopped_by_guest(who, control.by)))
     FreezeGuard(control, lambda seconds: write(told_words(seconds))).keep_looking()
-    return StaffLines(
+    return control, StaffLines(
         control,
         workspace.name,
         lambda wanted: workspace.find_person(wanted).id,
@@ -234,4 +244,5 @@ def _lines(
         also=new,
         demonstrations=shown,
         yes=yes,
+        before=before,
     )

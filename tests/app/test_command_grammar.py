@@ -104,7 +104,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
     typed = {type(command) for command in FIXED.values()} | {
         type(read(text)) for text in ("stop", "autonomy each", "ask for Rosa", "void Rosa",
                                       "Rosa: B", "drive left", "pace 9", "bingo 1", "play for x",
-                                      "here rosa", "left rosa")
+                                      "here rosa", "left rosa", "add Berta")
     }  # fmt: skip
     assert typed == set(get_args(GameCommand)) - {Confirm}  # which is answered by Y or N
     helped = " ".join(key for key, _ in MEANINGS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -77,7 +78,10 @@ class Typist:
     def plays(self, workspace: Workspace, *, typed: bool = True) -> str:
         """Play a game; return what was written."""
         learnt, _ = load_policy(workspace.store, workspace.activity)
-        yes = TypedYes(terminal=typed, session=TerminalSession, flush=lambda: None)
+        ticks = count()  # so that no answer is faster than a person
+        yes = TypedYes(
+            terminal=typed, session=TerminalSession, flush=lambda: None, clock=lambda: next(ticks)
+        )
         control = GameController(workspace.supervision(learnt, 4, asks=True), "Ada")
         games = StaffLines(
             control,

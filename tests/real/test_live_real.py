@@ -209,6 +209,22 @@ def test_faults_can_be_read_from_a_file(folder: Path, tmp_path: Path) -> None:
     assert json.dumps(done.stdout) == '""'
 
 
+def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
+    done = subprocess.run(  # noqa: S603
+        [TANGY, "live", "--bench", "--plain", "--seed", "4", "--by", "Nina", "--data", str(folder)],
+        input="\n".join(["wait until called", "add Berta", "wait 2", "wait until called", "end"]),
+        capture_output=True, text=True, timeout=240,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    joined, resumed = done.stdout.split("Berta takes part from now on.")
+    assert "Berta joins: seat 5." in joined and "is paused" not in joined
+    assert " call number" in resumed and "You ended the game." in resumed
+    with Store.open(folder, write=False) as store:
+        did = [(e.body["did"], e.body["by"]) for e in store.events("staff action")]
+        assert len({e.body["game"] for e in store.events("staff action")}) == 1
+    assert ("came", "Nina") in did and ("ended", "Nina") in did
+
+
 def test_staff_control_a_live_game_by_lines_and_the_log_names_them(folder: Path) -> None:
     lines = [
         "pause", "where", "go on", "wait until called", "stop the robot", "drive left", "go on",

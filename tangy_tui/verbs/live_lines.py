@@ -1,0 +1,89 @@
+"""Live games with staff at the lines: when a person joins, the robot is switched on again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_profiles.game_world import BENCH
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_profiles.past_game import PastGame
+    from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.console.staff import StaffLines
+    from tangy_tui.console.typed_lines import TypedLines
+    from tangy_tui.learning.policy import Policy
+    from tangy_tui.monitoring.supervision import Supervision
+
+
+class LiveLines:
+    """The live games of a session; `play` them, again after each person who `joined`."""
+
+    def __init__(self, workspace: Workspace, games: int, by: str, typed: TypedLines | None) -> None:
+        """Connect the terminal to the games of a workspace.
+
+        Args:
+            workspace: the workspace of the games.
+            games: the number of games.
+            by: who is on duty.
+            typed: the lines of a terminal; None: standard input is none.
+        """
+        self._workspace, self._by, self._typed = workspace, by, typed
+        self._left = games
+        self._control: GameController | None = None
+        self._lines: StaffLines | None = None
+        self._cards: Mapping[str, int] = {}
+
+    @property
+    def joined(self) -> bool:
+        """Whether a game was interrupted for a new person, and is to be played on."""
+        return self._control is not None and self._control.joined
+
+    @property
+    def policy(self) -> Policy:
+        """The policy of the last game, which staff may have taught.
+
+        Raises:
+            ValueError: no game has begun.
+        """
+        if self._control is None:
+            raise ValueError("no game has begun")
+        return self._control.supervision.policy
+
+    def play(
+        self, supervision: Supervision, world: LiveWorld, past: PastGame | None = None
+    ) -> bool:
+        """Play, up to a game that a person joins; return whether none stopped early.
+
+        Args:
+            supervision: runs the games.
+            world: the robot's world, switched on.
+            past: an interrupted game to resume first.
+        """
+        from tangy_tui.app.joining import Admission, resume_joined
+        from tangy_tui.verbs.playing import staff_lines
+
+        before = self._control
+        if before is not None:
+            past = resume_joined(self._workspace, world.played_in)
+            if self._cards and world.played_in != BENCH:  # the bench deals new ones
+                world.cards.dealt.deal(self._cards)
+        control, lines = staff_lines(
+            self._workspace,
+            supervision,
+            self._by,
+            robot=world,
+            past=past,
+            typed=self._typed,
+            before=self._lines,
+        )
+        control.goes_on = before is not None and before.goes_on
+        control.admission = Admission(self._workspace, world)
+        self._control, self._lines = control, lines
+        fine = lines.run(self._left)
+        self._left -= lines.played
+        self._cards = world.known_cards
+        return fine
