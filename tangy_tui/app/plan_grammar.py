@@ -70,5 +70,5 @@ def _claim(said: str, find_person: Callable[[str], str], rules: GameRules) -> Ga
     number, _, person = rest.partition(" ")
     digits = number.strip("#,:")
     if not (digits.isascii() and digits.isdecimal() and len(digits) <= 6):
-        raise TangyError(plain(f"Say {word} with the number of the card: {said[:60]!r}."))
+        raise TangyError(plain(f"'{rest[:60]}' is no number of a card. Say it as in: {word} 17."))
     return ClaimCard(int(digits), find_person(person) if person.strip() else "")

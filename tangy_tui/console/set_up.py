@@ -20,6 +20,9 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.text import set_up as text
 
+_NO = ("end", "n", "no", "quit", "leave")
+"""Lines that do not begin a game that is not ready."""
+
 _SEAT = re.compile(r"seat (.+?) (\d{1,2})", re.I)
 _MINUTES = re.compile(r"time (\d{1,3})(?: minutes?)?", re.I)
 _WORDS = re.compile(r"words (.+)", re.I)
@@ -83,8 +86,11 @@ class SetUpLines:
         if not not_ready:
             return True
         self._write(text.lines_anyway(not_ready))
-        line = self._read()
-        return line is not None and line.strip().casefold() == "begin"
+        while (line := self._read()) is not None and line.strip().casefold() not in _NO:
+            if line.strip().casefold() == "begin":
+                return True
+            self._write(text.begin_or_end(line.strip()))
+        return False
 
     def _find(self, wanted: str) -> str:
         return self.setup.workspace.find_person(wanted).id

@@ -124,7 +124,7 @@ def paused_lines(count: int, seconds: float) -> list[str]:
     return [f"It waited for late data {times}, for {seconds:.1f} s in all."] if count else []
 
 
-NEVER_ASKED = "Tangy has asked for nothing yet, so that it does not know what works."
+NEVER_ASKED = "Tangy has asked for nothing yet, so it does not know what works."
 
 
 def belief_lines(supervision: Supervision, name: Name) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import assert_never
 
+from tangy_profiles.reading import plain
 from tangy_tui.app.set_up import Check, CheckName, Choice, SetUp
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.register import staff_names
@@ -227,6 +228,11 @@ def lines_anyway(not_ready: Sequence[Check]) -> str:
     """Name the failed checks, and ask whether to begin in spite of them."""
     names = ", ".join(NAMES[check.name] for check in not_ready).lower()
     return f"Not ready: {names}. Type begin to begin anyway, or end."
+
+
+def begin_or_end(typed: str) -> str:
+    """Ask again after a line that is neither."""
+    return plain(f"I do not know '{typed[:60]}' here. Type begin to begin anyway, or end.")
 
 
 def line_of(check: Check) -> str:

@@ -30,33 +30,33 @@ def action_words(noted: Noted, name: Name) -> str:
         case "let go on":
             return "the robot was released after a stop"
         case "took over":
-            return "staff took over"
+            return "a person took over"
         case "ended":
-            return "staff ended the game"
+            return "the game was ended"
         case "autonomy":
             return f"autonomy: {detail}"
         case "drove":
-            return "staff drove the robot"
+            return "the robot was driven by hand"
         case "called again":
-            return f"staff had the last number called again{f': {detail}' if detail else ''}"
+            return f"the last number was called again{f': {detail}' if detail else ''}"
         case "asked for":
-            return f"staff asked for help for {person}"
+            return f"help was called for {person}"
         case "told":
-            return f"staff told Tangy of {person or 'the group'}: {detail}"
+            return f"Tangy was told of {person or 'the group'}: {detail}"
         case "heard":
             return f"Tangy heard of {person or 'the group'}: {detail}"
         case "pace":
-            return f"staff set the pace: {detail} s"
+            return f"the pace was set: {detail} s"
         case "took back":
-            return f"staff took a call back: {detail}"
+            return f"a call was taken back: {detail}"
         case "claim right":
-            return f"staff checked card {detail}: it wins"
+            return f"card {detail}{_of(person)} was checked: it wins"
         case "claim wrong":
-            return f"staff checked card {detail}: it does not win yet"
+            return f"card {detail}{_of(person)} was checked: it does not win yet"
         case "patterns":
-            return f"staff chose what is played for: {detail}"
+            return f"played for from then on: {detail}"
         case "rules":
-            return f"staff chose: {detail}"
+            return f"chosen: {detail}"
         case "came":
             return f"{person} came"
         case "left":
@@ -85,6 +85,10 @@ def action_words(noted: Noted, name: Name) -> str:
             return _named(detail, name)
         case forgotten:
             assert_never(forgotten)
+
+
+def _of(person: str) -> str:
+    return f" of {person}" if person else ""
 
 
 def _named(words: str, name: Name) -> str:

@@ -102,7 +102,7 @@ def person_words(person: PersonNow) -> str:
         case "away":
             return "not here"
         case "visited":
-            return "visit now"
+            return "Tangy is there"
         case "comes":
             return "Tangy comes"
         case "asks":

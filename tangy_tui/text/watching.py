@@ -58,7 +58,7 @@ def stopped_by_guest(guest: str, driver: str) -> str:
     """Tell that an onlooker stopped the robot, who may have the driver's name."""
     if guest == driver:
         return "The robot was stopped from another console."
-    return f"{guest} stopped the robot from another console."
+    return f"{guest[:1].upper()}{guest[1:]} stopped the robot from another console."
 
 
 def driver_words(view: GameView) -> str:

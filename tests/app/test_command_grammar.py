@@ -119,7 +119,10 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
         ("drive up", f"Tangy cannot drive 'up': {', '.join(DIRECTIONS)}."),
         ("drive left 60", "One line drives for 5 s at most."),
         ("pace 90", "The pace is from 5 to 60 s."),
-        ("bingo seventeen", "Say bingo with the number of the card: 'bingo seventeen'."),
+        (
+            "bingo seventeen",
+            "'seventeen' is no number of a card. Say it as in: bingo 17.",
+        ),
         ("left Nobody", "There is nobody called 'Nobody'."),
     ],
 )

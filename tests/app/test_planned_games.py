@@ -146,12 +146,12 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
     def name(person: str) -> str:
         return "Rosa" if person == "user3" else person
 
-    pace = f"staff set the pace: {planned.world.pace:g} s"
+    pace = f"the pace was set: {planned.world.pace:g} s"
     assert [what for _, _, what in staff_rows([replay], name)] == [
-        pace, "staff asked for help for Rosa"
+        pace, "help was called for Rosa"
     ]  # fmt: skip
     (told,) = moment_lines(replay.moments[-1], True, None, name)
-    assert "help for Rosa" in told
+    assert "help was called for Rosa" in told
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

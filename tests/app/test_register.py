@@ -118,6 +118,19 @@ def test_a_change_prints_only_its_own_lines(data_folder: Path) -> None:
     workspace.close()
 
 
+@pytest.mark.parametrize(("typed", "begins"), [("begin", True), ("end", False), (None, False)])
+def test_a_misspelt_answer_about_what_is_not_ready_is_asked_again(
+    data_folder: Path, monkeypatch: pytest.MonkeyPatch, typed: str | None, begins: bool
+) -> None:
+    workspace = Workspace(data_folder)
+    setup, said = SetUp.of(workspace), list[str]()
+    monkeypatch.setattr(SetUp, "checks", lambda self: [Check("tablet", "not ready")])
+    lines = iter(["slwoer", typed])
+    assert SetUpLines(setup, lambda: next(lines), said.append).begins_anyway() == begins
+    assert said[-1] == text.begin_or_end("slwoer")
+    workspace.close()
+
+
 def test_a_refused_activity_changes_nobody(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     setup = SetUp.of(workspace)

@@ -166,7 +166,7 @@ def test_the_log_lists_absent_people_of_a_game(workspace: Workspace, learnt: Pol
 
 def test_names_replace_ids_next_to_any_punctuation() -> None:
     told = Noted("told", "Ada", person="user1", detail="tired")
-    assert action_words(told, {"user1": "Rosa"}.__getitem__) == "staff told Tangy of Rosa: tired"
+    assert action_words(told, {"user1": "Rosa"}.__getitem__) == "Tangy was told of Rosa: tired"
     older = Noted("noted", "Ada", detail="staff told of user1: tired; xuser1 is nobody")
     said = action_words(older, lambda person: {"user1": "Rosa"}.get(person, person))
     assert said == "staff told of Rosa: tired; xuser1 is nobody"

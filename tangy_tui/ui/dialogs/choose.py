@@ -43,14 +43,23 @@ class OptionPage(Page):
         self._names = [unaccented(name) for name in names]
 
     def _kept(self, lines: Sequence[PageLine]) -> Sequence[PageLine]:
-        """Return the lines of the options whose names match; their notes do not count."""
+        """Return the lines of the options whose names match, those that begin so first.
+
+        Their notes do not count.
+        """
         words = unaccented(self.filter).split()
         kept = [
             line
             for line in lines
             if line.choice is None or all(word in self._names[line.choice] for word in words)
         ]
+        kept.sort(key=self._rank)
         return kept or [PageLine(((NONE_FOUND, "dim"),))]
+
+    def _rank(self, line: PageLine) -> int:
+        wanted = unaccented(self.filter).strip()
+        name = "" if line.choice is None else self._names[line.choice]
+        return 0 if name == wanted else 1 if name.startswith(wanted) else 2
 
     def _say_filter(self, count: str = "") -> None:
         """Show the filter at the foot of the dialog."""

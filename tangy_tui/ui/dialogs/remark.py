@@ -101,13 +101,12 @@ class RemarkDialog(Dialog[RemarkAnswer]):
             return  # it means the last step, whether or not the remark was seen
         known = event.key == "escape" or event.key in self._answers
         if not self._keys.take(event):
-            if known:
-                self._tell(TOO_EARLY)
+            self._tell(TOO_EARLY if known else NUMBER_OR_ESC)
         elif event.key == "escape":
             self.answer("later")
         elif known:
             self.answer(self._answers[event.key][0])
-        elif event.is_printable and event.key != "question_mark":
+        elif keymap_of(self.app).action(event.key) != "help":
             self._tell(NUMBER_OR_ESC)
 
     def action_undo(self) -> None:

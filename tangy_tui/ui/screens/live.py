@@ -268,7 +268,9 @@ class LiveScreen(PlayScreen):
             self.run_worker(self._ask_for(), name="ask", group="ask")
 
     async def _ask_for(self) -> None:
-        options = [Option(person.id, person.name) for person in self._workspace.people]
+        away = self.world.scene().away
+        here = [person for person in self._workspace.people if person.id not in away]
+        options = [Option(person.id, person.name) for person in here]
         person = await self.app.push_screen_wait(ChooseDialog(WHO_NEEDS_HELP, options))
         if person is not None:
             self._do(AskFor(person))
