@@ -47,6 +47,7 @@ from tangy_tui.app.game_commands import (
     SetAutonomy,
     StaffNote,
     StopRobot,
+    TakeBackCall,
     TakeOver,
     Tell,
     VoidResponse,
@@ -136,9 +137,7 @@ class GameController(EndingGames):
         return self.autonomy.proposal
 
     def begin(self) -> list[Event]:
-        """Begin the next game, or resume the interrupted one, paused until staff continue it.
-
-        Releases the robot. If it is stopped, no game begins.
+        """Release the robot and begin a game, or resume one, paused; if it is stopped, do nothing.
 
         Raises:
             NotResumable: the world cannot restore the state of the interrupted game.
@@ -370,7 +369,9 @@ class GameController(EndingGames):
         return StaffNote("voided", person)
 
     def refuses(self, command: GameCommand) -> StaffNote | None:
-        """Return why a command that moves the robot is refused at once, None if it is not."""
+        """Return why a command is refused at once, before its turn; None if it is not."""
+        if isinstance(command, TakeBackCall):
+            return self.plan.nothing_called(command.label)
         return self.refusal(asking=False) if isinstance(command, CallAgain | Drive) else None
 
     def refusal(self, *, asking: bool = True) -> StaffNote | None:

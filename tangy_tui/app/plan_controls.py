@@ -87,6 +87,15 @@ class GamePlanControls:
         number = None if world is None or self._idle else _number_called(world, label)
         return "" if world is None or number is None else world.activity.deck.label(number)
 
+    def nothing_called(self, label: str) -> StaffNote | None:
+        """Return why there is no call to take back, None if there is one.
+
+        Otherwise it would take back the call that is still being spoken, unasked.
+        """
+        if self.world is None or self._idle or self.called(label):
+            return None
+        return StaffNote("not called", label) if label else StaffNote("nothing called")
+
     def _take_back(self, world: PlannedGame, label: str) -> list[Result]:
         """Take back the last call, or the one with a label, and tell the group."""
         deck, number = world.activity.deck, _number_called(world, label)

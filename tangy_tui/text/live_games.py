@@ -62,11 +62,13 @@ def switch_on_words(robot: str) -> str:
     return f"Switch {robot} on?"
 
 
-def played_lines(games: Sequence[Game], since: datetime) -> list[str]:
-    """Tell how the games ended that ended `since` a time, and how to get their report."""
+def played_lines(games: Sequence[Game], since: datetime, report: str) -> list[str]:
+    """Tell how the games ended that ended `since` a time, and which command is for the report."""
     over = [game for game in games if game.ended is not None and game.ended >= since]
     lines = [f"Game {game.number}: {game.ending.rstrip('.')}." for game in over]
-    return [*lines, REPORT] if over else []
+    return [*lines, report_words(report)] if over else []
 
 
-REPORT = "For the report of the session, type: tangy report"
+def report_words(command: str) -> str:
+    """Tell the command for the report of a session."""
+    return f"For the report of the session, type: {command}"

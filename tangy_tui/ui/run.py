@@ -125,6 +125,7 @@ def run_live(
     teacher: str,
     ascii_only: bool,
     world: GameWorld,
+    report: str,
     ears: SpeechInput | None = None,
     past: PastGame | None = None,
     set_up: bool = True,
@@ -141,6 +142,7 @@ def run_live(
         teacher: who answers Tangy's questions; "": who is on duty.
         ascii_only: draw with ASCII characters.
         world: the world of the games.
+        report: the command for their report.
         ears: the recogniser for stops and answers.
         past: an interrupted game to resume first; None: ask about one if there is any.
         set_up: let staff set a new game up first.
@@ -168,7 +170,7 @@ def run_live(
 
     begun = datetime.now(UTC)
     status = _run(workspace, start, ascii_only, ears)
-    for line in played_lines(read_games(workspace.store), begun):
+    for line in played_lines(read_games(workspace.store), begun, report):
         print(plain(line))
     return status
 

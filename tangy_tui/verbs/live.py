@@ -17,7 +17,7 @@ from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.text.calls import REHEARSAL
 from tangy_tui.text.command_line import SWITCHING_ON
-from tangy_tui.text.live_games import part_words
+from tangy_tui.text.live_games import part_words, report_words
 from tangy_tui.text.outcomes import faults_logged, score_lines
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.verbs import common
@@ -196,6 +196,7 @@ def live(
             both |= {"injections": faults, "link": link}
             return opening_of(workspace, bench=bench, own=own, **both)
 
+        report = f"tangy report{common.as_given(data)}"
         if screen:
             from tangy_tui.ui.run import run_live
 
@@ -209,6 +210,7 @@ def live(
                     teacher="" if teacher is None else who,
                     ascii_only=ascii_only,
                     world=world,
+                    report=report,
                     past=past,
                     set_up=not begin,
                     pace=pace,
@@ -281,6 +283,8 @@ def live(
                     console.policy, number, asks=asks, world=there, rehearsal=rehearsal
                 )
                 to_their_end = console.play(supervision, there)
+        if console is not None:
+            common.print_line(report_words(report))
         if not to_their_end:
             raise typer.Exit(1)  # so that a script knows that games stopped early
 

@@ -140,7 +140,9 @@ def test_nothing_is_done_while_a_question_is_open(control: GameController) -> No
 
 
 def test_a_call_is_named_by_the_question(control: GameController) -> None:
-    assert needed_confirmation(TakeBackCall(), control) is None  # nothing was called
+    assert needed_confirmation(TakeBackCall(), control) is None
+    refused = control.refuses(TakeBackCall())  # or it would take back the call being spoken
+    assert refused is not None and refused.kind == "nothing called"
     call_once(control)
     label = control.supervision.world.activity.deck.label(called(control)[-1])
     asked = needed_confirmation(TakeBackCall(), control)

@@ -38,17 +38,20 @@ def test_staff_say_by_lines_who_is_on_duty(data_folder: Path) -> None:
     workspace.close()
 
 
+REPORT = "tangy report --data 'my home'"
+
+
 def test_the_end_of_a_game_is_told_with_the_way_to_its_report(taught: Path) -> None:
     workspace = Workspace(taught)
     game = LiveGame(workspace)
     game.play(3)
     store: Store = workspace.store
     (begun,) = read_games(store)
-    assert played_lines([begun], begun.at) == []  # it is not over
+    assert played_lines([begun], begun.at, REPORT) == []  # it is not over
     game.control.abandon()
     (ended,) = read_games(store)
-    first, *_, last = played_lines([ended], begun.at)
-    assert first.startswith("Game 1: ") and "tangy report" in last
+    first, *_, last = played_lines([ended], begun.at, REPORT)
+    assert first.startswith("Game 1: ") and last.endswith(REPORT)
     assert ended.ended is not None
-    assert played_lines([ended], ended.ended + timedelta(seconds=1)) == []
+    assert played_lines([ended], ended.ended + timedelta(seconds=1), REPORT) == []
     workspace.close()

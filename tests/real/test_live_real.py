@@ -219,6 +219,7 @@ def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
     joined, resumed = done.stdout.split("Berta takes part from now on.")
     assert "Berta joins: seat 5." in joined and "is paused" not in joined
     assert " call number" in resumed and "You ended the game." in resumed
+    assert f"tangy report --data {folder}" in " ".join(resumed.split())
     with Store.open(folder, write=False) as store:
         did = [(e.body["did"], e.body["by"]) for e in store.events("staff action")]
         assert len({e.body["game"] for e in store.events("staff action")}) == 1

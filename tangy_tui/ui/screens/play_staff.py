@@ -122,7 +122,9 @@ class PlayStaff(PlayPanels):
     def do_sure(self, command: GameCommand) -> None:
         """Carry out a command; first ask about one that cannot be undone."""
         asked = needed_confirmation(command, self.control)
-        if asked is not None:
+        if (refused := self.control.refuses(command)) is not None:
+            self._take([refused])
+        elif asked is not None:
             self.run_worker(self._make_sure(asked), name="sure", group="sure")
         elif isinstance(command, GoOn):
             self.go_on()
