@@ -210,8 +210,9 @@ class Localisation:
             self._settled = lead > LEAD
             self._unsettled = 0.0 if self._settled else AGAIN
             if self._settled:  # the comparison ruled out all other places
-                self._weights *= near(self._particles, self._anchor)
-                self._weights /= self._weights.sum()
+                there = self._weights * near(self._particles, self._anchor)
+                if total := there.sum():
+                    self._weights = there / total
             elif rival != self._anchor and lead < -LEAD:
                 renewed = around(rival, START, count // 2, self._rng)
         else:
