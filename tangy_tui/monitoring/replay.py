@@ -247,6 +247,10 @@ def _events(store: Store, games: Sequence[Game]) -> Iterator[Event[EventRecord]]
         yield event
 
 
+def _changes(events: Sequence[Event[EventRecord]]) -> Iterator[GameChange]:
+    return (event.record for event in events if isinstance(event.record, GameChange))
+
+
 def _replay(
     game: Game,
     events: Sequence[Event[EventRecord]],
@@ -259,6 +263,8 @@ def _replay(
     moved: dict[str, int] = {}  # fault id -> number of its moves so far
     step, acted = 0, 0.0
     done = Counter[str]()  # how often each behaviour was completed so far
+    new = {change.person for change in _changes(events) if change.what == "joined"}
+    lets_in = False  # staff let a person in, for whom the game is resumed at once
     for event in events:
         what: What
         match event.record:
@@ -278,9 +284,14 @@ def _replay(
             case GameChange() as what if what.what in OF_ITS_OWN:
                 if what.what in ("visit", "won", "claimed"):
                     replay.unasked.add((step + 1, what.person))
+            case GameResumed() if lets_in:
+                lets_in = False
+                continue
             case GameResumed(by=by):
                 what = Noted("resumed", by)
             case StaffAction() as action:
+                lets_in = action.did == "came" and action.person in new
+                new -= {action.person} if lets_in else set()
                 # while a step was carried out that comes later
                 acted = max(acted, action.seconds or 0.0)
                 what = Noted(action.did, action.by, action.person, action.detail, action.taken_back)

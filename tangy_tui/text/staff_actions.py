@@ -30,7 +30,7 @@ def action_words(noted: Noted, name: Name) -> str:
         case "let go on":
             return "the robot was released after a stop"
         case "took over":
-            return "a person took over"
+            return "control was taken over"
         case "ended":
             return "the game was ended"
         case "autonomy":
@@ -46,7 +46,7 @@ def action_words(noted: Noted, name: Name) -> str:
         case "heard":
             return f"Tangy heard of {person or 'the group'}: {detail}"
         case "pace":
-            return f"the pace was set: {detail} s"
+            return f"the pace was set to {detail} s"
         case "took back":
             return f"a call was taken back: {detail}"
         case "claim right":
@@ -54,7 +54,7 @@ def action_words(noted: Noted, name: Name) -> str:
         case "claim wrong":
             return f"card {detail}{_of(person)} was checked: it does not win yet"
         case "patterns":
-            return f"played for from then on: {detail}"
+            return f"the game went on for: {detail}"
         case "rules":
             return f"chosen: {detail}"
         case "came":

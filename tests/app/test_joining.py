@@ -121,6 +121,8 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     page, lines = session_page(session), list(session_lines(session))
     for done in ("came", "left"):
         assert any(f"Ada: Berta {done}" in line for line in lines) and f"Berta {done}" in page
+    # the crash interrupted the game, and not the join
+    assert sum("after an interruption" in line for line in lines) == 1
     joined = [e.record for e in workspace.store.events(GameChange) if e.record.what == "joined"]
     assert [(one.person, one.by) for one in joined] == [("user5", "Ada")]
     assert not list(workspace.store.events(GameEnding))

@@ -146,7 +146,7 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
     def name(person: str) -> str:
         return "Rosa" if person == "user3" else person
 
-    pace = f"the pace was set: {planned.world.pace:g} s"
+    pace = f"the pace was set to {planned.world.pace:g} s"
     assert [what for _, _, what in staff_rows([replay], name)] == [
         pace, "help was called for Rosa"
     ]  # fmt: skip

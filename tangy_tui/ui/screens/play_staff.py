@@ -30,6 +30,7 @@ from tangy_tui.app.game_commands import (
     Tell,
 )
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.joining import NEW
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
@@ -50,8 +51,6 @@ from tangy_tui.ui.joining import ask_who_joins
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted
 
-NEW = "new"
-"""The choice of a person who is not known yet."""
 PACE_SECONDS = 1.0
 """The delay after the last change of pace before the new pace is shown."""
 SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
