@@ -27,7 +27,7 @@ BACKSPACES = ("\x7f", "\b")
 
 
 def cells_of(text: str) -> int:
-    """Return the width of a text on a terminal, in cells."""
+    """Return the width of a text on a terminal, in cells; the console does not load rich for it."""
     return sum(
         0 if unicodedata.combining(one) else 2 if unicodedata.east_asian_width(one) in "WF" else 1
         for one in text
