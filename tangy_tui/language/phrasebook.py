@@ -66,7 +66,7 @@ class Phrases:
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
         """Add the phrases, then their forms with people; the first entry of a phrase wins."""
-        self._activity = activity
+        self.activity = activity
         self._order = tuple(activity.behaviours)
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The questions about the behaviours, as they are spoken."""
@@ -109,7 +109,7 @@ class Phrases:
         numbered = product(templates()["people"], self.numbers)
         ways = [*map(spoken, (*numbered, *self.seats)), *map(" ".join, self.names)]
         Random(SEED).shuffle(ways)
-        return tuple(spoken_examples(self._activity, ways))
+        return tuple(spoken_examples(self.activity, ways))
 
     def all(self) -> Iterable[Phrase]:
         """Return the phrases in the order in which they were added."""

@@ -109,8 +109,10 @@ def wanted(
 
 
 def sounds_of(phrasebook: Phrasebook) -> tuple[object, ...]:
-    """Return the spoken content of a phrasebook: phrasebooks that share it can share a decoder."""
-    return phrasebook.spoken(), phrasebook.pronunciations(), tuple(phrasebook.table.answers)
+    """Return all that `wanted` reads: phrasebooks that share it can share a decoder."""
+    table = phrasebook.table
+    people = tuple(table.numbers), tuple(table.names), tuple(table.seats)
+    return table.activity, people, phrasebook.pronunciations(), phrasebook.learns
 
 
 def understand(

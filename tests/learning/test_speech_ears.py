@@ -290,6 +290,29 @@ class TestOtherPhrases:
         await soon(lambda: "go to zoe" in here.listened_for)
         assert here.words == ["call number"]
 
+    async def test_other_wordings_of_the_same_phrases_apply_too(self, enter: Enter) -> None:
+        here = await enter().ready()
+        before, activity = here.decoder.wanted, load_activity("bingo")
+        worded = replace(activity.behaviours["joke"], wordings=("tickle them a little",))
+        behaviours = {**activity.behaviours, "joke": worded}
+        here.ears.understand_by(
+            Phrasebook(replace(activity, behaviours=behaviours), load_people(4))
+        )
+        await here.say(sound("c"))
+        await soon(lambda: here.decoder.wanted is not before)
+        assert before is not None and here.decoder.wanted is not None
+        assert here.decoder.wanted.phrases == before.phrases
+        assert "tickle them a little" in here.decoder.wanted.no_stops
+
+    async def test_a_phrasebook_that_also_learns_renews_the_decoder(self, enter: Enter) -> None:
+        here = await enter().ready()
+        learns = Phrasebook(
+            load_activity("bingo"), load_people(4), lambda _: pytest.fail("read for the sounds")
+        )
+        here.ears.understand_by(learns)
+        await here.say(sound("c"))
+        await soon(lambda: here.decoder.wanted is not None and here.decoder.wanted.sentences != ())
+
     async def test_speech_during_a_change_of_phrases_is_kept(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         people = (*load_people(3), replace(load_people(4)[3], name="Zoe"))
