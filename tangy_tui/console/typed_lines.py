@@ -88,6 +88,8 @@ class TypedLines:
         self._decode = codecs.getincrementaldecoder("utf-8")("replace").decode
         self._drawing = threading.Lock()
         self._before = termios.tcgetattr(keys)
+        self._mode = threading.Lock()
+        self._given_back = False
 
     def read(self) -> str | None:
         """Return the next line; None at the end of the input."""
@@ -125,10 +127,10 @@ class TypedLines:
 
     def prepare(self) -> None:
         """Let the terminal hand over each key without echoing it, as long as it is ours."""
-        with suppress(termios.error, OSError):
+        with self._mode, suppress(termios.error, OSError):
             mode = termios.tcgetattr(self._keys)
             echoes = termios.ICANON | termios.ECHO
-            if mode[3] & echoes and self._is_ours:
+            if mode[3] & echoes and self._is_ours and not self._given_back:
                 mode[3] &= ~echoes
                 termios.tcsetattr(self._keys, termios.TCSANOW, mode)
 
@@ -141,9 +143,11 @@ class TypedLines:
             return True
 
     def restore(self) -> None:
-        """Give the terminal back as it was."""
-        with suppress(termios.error):
-            termios.tcsetattr(self._keys, termios.TCSANOW, self._before)
+        """Give the terminal back as it was, and leave it so, even if lines are still being read."""
+        with self._mode, suppress(termios.error):
+            self._given_back = True
+            if self._is_ours:
+                termios.tcsetattr(self._keys, termios.TCSANOW, self._before)
 
     def _take(self, character: str) -> str | None:
         with self._drawing:

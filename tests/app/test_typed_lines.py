@@ -150,3 +150,5 @@ def test_the_terminal_is_given_back_as_it_was() -> None:
     assert not termios.tcgetattr(desk.child)[3] & termios.ECHO
     desk.lines.restore()
     assert termios.tcgetattr(desk.child) == before
+    desk.lines.prepare()  # as a thread does that still reads lines
+    assert termios.tcgetattr(desk.child) == before
