@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import hypot
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ import pytest
 from tangy_hw.device_protocols import Pose, Scan, Twist
 from tangy_hw.navigation.localisation import LOST, Estimate, Localisation
 from tangy_hw.navigation.occupancy import map_of_room
-from tangy_hw.navigation.particles import FEWEST, MOST
+from tangy_hw.navigation.particles import FEWEST, MOST, near
 from tangy_hw.navigation.poses import wrap
+from tangy_hw.navigation.recent_scans import Comparison, RecentScans
 from tangy_profiles.room import load_room
 from tests.bench.lost_robots import in_room
 from tests.hw.raycast import Wheels, driven, look, room_sides, sides, tour
@@ -172,6 +174,17 @@ class TestFinding:
         robot.true = Pose(1.5, 2.5, 2.0)
         found = robot.drive([Twist(0, 0)] * 60)
         assert any(estimate.lost for _, estimate in found)
+
+    @pytest.mark.parametrize(("over_rival", "moves"), [(-1.0, True), (0.3, False)])
+    def test_particles_move_only_to_a_place_that_is_better_supported(
+        self, over_rival: float, moves: bool
+    ) -> None:
+        robot, there = Driven(3, start=None), Pose(1.0, 5.0, 2.0)
+        result = Comparison(-1.0, there, over_rival)
+        with patch.object(RecentScans, "compare", return_value=result) as compare:
+            while not compare.called:
+                robot.drive([Twist(0.5, 0.0)])
+        assert (near(robot.localisation.particles, there).mean() > 0.3) == moves
 
     def test_staff_can_set_the_pose(self) -> None:
         robot = Driven(24, start=Pose(1, 1, 0))

@@ -16,7 +16,7 @@ from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move,
 from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
 from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
-from tangy_hw.navigation.recent_scans import RecentScans
+from tangy_hw.navigation.recent_scans import Comparison, RecentScans
 from tangy_hw.navigation.scan_matching import Reference
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_profiles.room import load_room
@@ -142,42 +142,51 @@ class TestSearch:
 class TestRecentScans:
     OPPOSITE = Pose(ROOM.width, ROOM.depth, pi)  # turned by half, the walls look the same
 
-    def compared(self, steps: int, *, swapped: bool = False) -> tuple[float, Pose, Pose, Pose]:
-        """Drive; return the lead, the best other place, the true pose, and the opposite one."""
+    def compared(
+        self, steps: int, *, swapped: bool = False, elsewhere: float = 0.9
+    ) -> tuple[Comparison, Pose, Pose]:
+        """Drive; return the comparison, the true pose, and the opposite one.
+
+        A search gives the score `elsewhere` to the place with which the pose is compared.
+        """
         rng = np.random.default_rng(3)
         recent, true, wheels = RecentScans(LikelihoodField(MAP), rng), START, Wheels(rng)
         for number in range(steps):
             points = thin(look(SIDES, true, rng), 20.0)
             opposite = compose(self.OPPOSITE, true)
             here, other = (opposite, true) if swapped else (true, opposite)
-            recent.note(wheels.pose, points, np.array([other]), np.array([0.9]))
-            lead, rival = recent.compare(here, wheels.pose, points)
+            recent.note(wheels.pose, points, np.array([other]), np.array([elsewhere]))
+            found = recent.compare(here, wheels.pose, points)
             if number < steps - 1:
                 true = driven(true, Twist(0.5, 0.1), 1.0)
                 wheels.turn(Twist(0.5, 0.1), 1.0)
-        return lead, rival, true, opposite
+        return found, true, opposite
 
     def test_the_scans_of_a_way_support_the_true_pose_more_than_its_mirror_image(self) -> None:
-        lead, rival, _, opposite = self.compared(FEWEST_SCANS)
-        assert lead > 0.1
+        (lead, rival, _), _, opposite = self.compared(FEWEST_SCANS)
+        assert lead > 0.1 and rival is not None
         assert hypot(rival.x - opposite.x, rival.y - opposite.y) < 0.3
 
     def test_the_mirror_image_loses_and_the_true_pose_is_told(self) -> None:
-        lead, rival, true, _ = self.compared(FEWEST_SCANS, swapped=True)
-        assert lead < -0.1
+        (lead, rival, over_rival), true, _ = self.compared(FEWEST_SCANS, swapped=True)
+        assert lead < -0.1 and over_rival < -0.1 and rival is not None
         assert hypot(rival.x - true.x, rival.y - true.y) < 0.3
 
+    def test_scans_that_each_fit_better_somewhere_name_no_better_place(self) -> None:
+        (lead, rival, over_rival), _, _ = self.compared(FEWEST_SCANS, elsewhere=1.0)
+        assert lead < 0.0 < 0.1 < over_rival and rival is not None
+
     def test_few_scans_do_not_tell_two_places_apart(self) -> None:
-        lead, rival, true, _ = self.compared(FEWEST_SCANS - 1)
-        assert lead == -inf and rival == true
+        found, _, _ = self.compared(FEWEST_SCANS - 1)
+        assert found.lead == -inf and found.rival is None
 
     def test_scans_at_one_place_count_as_one(self) -> None:
         rng = np.random.default_rng(3)
         recent = RecentScans(LikelihoodField(MAP), rng)
         for _ in range(2 * FEWEST_SCANS):
             points = thin(look(SIDES, START, rng), 20.0)
-            lead, _pose = recent.compare(START, IDENTITY, points)
-        assert lead == -inf
+            found = recent.compare(START, IDENTITY, points)
+        assert found.lead == -inf
 
     def test_forgotten_scans_do_not_count(self) -> None:
         rng = np.random.default_rng(3)
@@ -186,9 +195,9 @@ class TestRecentScans:
             if number == FEWEST_SCANS + 1:
                 recent.forget()
             points = thin(look(SIDES, true, rng), 20.0)
-            lead, _pose = recent.compare(true, true, points)
+            found = recent.compare(true, true, points)
             true = driven(true, Twist(0.5, 0.1), 1.0)
-        assert lead == -inf
+        assert found.lead == -inf
 
 
 class TestMatching:

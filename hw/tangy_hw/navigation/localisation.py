@@ -206,15 +206,15 @@ class Localisation:
         if self._settled:
             self._searches = 0
         elif not self._unsettled:
-            lead, rival = self._recent.compare(self._anchor, odometry, points)
-            self._settled = lead > LEAD
+            compared = self._recent.compare(self._anchor, odometry, points)
+            self._settled = compared.lead > LEAD
             self._unsettled = 0.0 if self._settled else AGAIN
             if self._settled:  # the comparison ruled out all other places
                 there = self._weights * near(self._particles, self._anchor)
                 if total := there.sum():
                     self._weights = there / total
-            elif rival != self._anchor and lead < -LEAD:
-                renewed = around(rival, START, count // 2, self._rng)
+            elif compared.rival is not None and compared.over_rival < -LEAD:
+                renewed = around(compared.rival, START, count // 2, self._rng)
         else:
             tried = FIRST_TRIED if self._global else TRIED
             self._searches += 1

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from math import hypot, inf, log
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -27,6 +28,14 @@ ALONG = Nudges(8, 0.08, 0.05)  # for a place that is followed
 BY_CHANCE = 0.03  # by which each scan for itself may fit better elsewhere than at the right place
 NOWHERE, NOTHING = np.zeros((0, 3)), np.zeros(0)
 BACK = (Nudges(12, 0.1, 0.08), Nudges(12, 0.03, 0.025))  # for a pose that is followed back
+
+
+class Comparison(NamedTuple):
+    """A pose's lead over all other places, and over the best other place that was followed."""
+
+    lead: float
+    rival: Pose | None = None
+    over_rival: float = inf
 
 
 class RecentScans:
@@ -68,12 +77,13 @@ class RecentScans:
         best = max(fits.max(initial=FLOOR), scores.max(initial=FLOOR))
         self._kept.append((odometry, points, log(best)))
 
-    def compare(self, pose: Pose, odometry: Pose, points: Floats) -> tuple[float, Pose]:
-        """Take a scan; return a pose's lead over other places, and the best of these.
+    def compare(self, pose: Pose, odometry: Pose, points: Floats) -> Comparison:
+        """Take a scan, and compare a pose with the other places that the scans support.
 
         The lead is by how much the scans support the pose more: the sum over the scans of the
         differences between the logarithms of the fits. It is `inf` if they fit nowhere else, and
-        `-inf`, with the pose itself, while they are too few to say.
+        `-inf` while they are too few to say. It may be negative without a better place: each scan
+        for itself may fit better somewhere else.
 
         Args:
             pose: the pose that may be believed, in m and rad.
@@ -83,9 +93,9 @@ class RecentScans:
         self.note(odometry, points)
         poses = _distinct(np.vstack((np.asarray([pose]), self._places)), PLACES + 1)
         if len(self._kept) < FEWEST:
-            return -inf, pose
+            return Comparison(-inf)
         if len(poses) == 1:
-            return inf, pose
+            return Comparison(inf)
         there, support, anywhere, now = poses, np.zeros(len(poses)), 0.0, odometry
         for then, seen, best in reversed(self._kept):
             there, now = self._moved(there, now, then), then
@@ -94,7 +104,8 @@ class RecentScans:
             support += np.log(fits)
             anywhere += best - BY_CHANCE
         rival = 1 + int(support[1:].argmax())
-        return float(support[0] - max(support[rival], anywhere)), Pose(*poses[rival])
+        lead, over_rival = support[0] - max(support[rival], anywhere), support[0] - support[rival]
+        return Comparison(float(lead), Pose(*poses[rival]), float(over_rival))
 
     def _moved(self, poses: Floats, start: Pose, end: Pose) -> Floats:
         """Return where poses (n, 3) are after the way between two poses by odometry."""
