@@ -351,6 +351,8 @@ class StaffNote:
     about: str = ""
     words: str = ""
     """Words of the activity that the note quotes."""
+    people: tuple[str, ...] = ()
+    """The ids of people it names."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,15 +32,15 @@ def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
     order = [person.id for person in workspace.people]
     if workspace.room is workspace.chosen_room:
         check_places(workspace.room, len(order) + 1)
+    there = order
     try:
         with workspace.store.transaction():
-            id = add_person(workspace.store, guest=guest)
-            workspace.register()
+            id = add_person(workspace.store, guest=guest, taken=order)
+            workspace.register()  # everybody, since no two people may have the same name
             workspace.rename(workspace.find_person(id), name)
+        there = [*order, id]
     finally:
-        workspace.register()  # without the person, if the name was refused
-        new = [person.id for person in workspace.people if person.id not in order]
-        workspace.seat([*order, *new])
+        workspace.gather(there)
     return id
 
 
@@ -69,8 +69,9 @@ class Admission:
         for person in people:
             if folded(name) in (folded(person.name), folded(person.id)):
                 return StaffNote("known already", person.id)
-            if unaccented(person.name).split()[:1] == [unaccented(name)]:
-                return StaffNote("which person", person.id, name)
+        first = [unaccented(name)]
+        if named := tuple(p.id for p in people if unaccented(p.name).split()[:1] == first):
+            return StaffNote("which person", words=name, people=named)
         if len(people) >= MOST_PEOPLE:
             return StaffNote("most people", str(MOST_PEOPLE))
         if len(people) >= room.places:

@@ -11,7 +11,7 @@ from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.game_world import BENCH, LIVE
-from tangy_profiles.person import Person, folded, unaccented
+from tangy_profiles.person import MOST_PEOPLE, Person, folded, load_people, unaccented
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room, room_for
 from tangy_profiles.state import FRONT
@@ -88,7 +88,7 @@ class Participants:
 
     def gather(self, ids: Sequence[str]) -> None:
         """Make exactly these people the participants, in this order."""
-        there = {person.id: person for person in self._sample}
+        there = {person.id: person for person in (*load_people(MOST_PEOPLE), *self._sample)}
         self._sample = tuple(there.get(id, Person(id, id)) for id in ids)
         self._place()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime
 
@@ -85,15 +85,15 @@ def known_people(store: Store, people: Sequence[Person]) -> list[Person]:
     ]
 
 
-def add_person(store: Store, *, guest: bool = False) -> str:
-    """Register a person, and return the id.
+def add_person(store: Store, *, guest: bool = False, taken: Collection[str] = ()) -> str:
+    """Register a person, and return the id, which is none of those `taken`.
 
     Raises:
         TangyError: the most people take part already.
     """
     if len(participants(store, REGISTERED)) >= MOST_PEOPLE:
         raise TangyError(f"{MOST_PEOPLE} people take part already: archive somebody first.")
-    taken = {str(event.person) for event in store.events(PersonAdded)}
+    taken = {*taken, *(str(event.person) for event in store.events(PersonAdded))}
     if guest:
         id = next(f"{GUEST}{n}" for n in range(1, len(taken) + 2) if f"{GUEST}{n}" not in taken)
     else:

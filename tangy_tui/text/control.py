@@ -161,7 +161,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "known already":
             return joining.known_words(name(about))
         case "which person":
-            return joining.which_words(noted.words, name(about))
+            return joining.which_words(noted.words, [*map(name, noted.people)])
         case "most people":
             return joining.full_words(about)
         case "no seat":

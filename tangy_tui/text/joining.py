@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from tangy_tui.text.numbers import listed
+
 REFUSED = {
     "no name": "Type the name as well, as in: add Berta.",
     "nobody joins": "Nobody new can join this game. Add them before the next one.",
@@ -15,10 +19,12 @@ def known_words(name: str) -> str:
     return f"{name} takes part already. If {name} was away, type: here {name}."
 
 
-def which_words(wanted: str, name: str) -> str:
+def which_words(wanted: str, names: Sequence[str]) -> str:
     """Ask whether a known person is meant whose first name was typed."""
+    take = "takes" if len(names) == 1 else "take"
+    who = " or ".join(f"here {name}" for name in names)
     return (
-        f"{name} takes part already. If you mean {name}, type: here {name}. "
+        f"{listed(names)} {take} part already. If you mean {listed(names, 'or')}, type: {who}. "
         f"For another {wanted}, type the whole name."
     )
 

@@ -152,6 +152,40 @@ def test_nobody_joins_without_a_name_a_seat_or_a_name_of_their_own(taught: Path)
     workspace.close()
 
 
+def test_all_people_with_a_first_name_are_named(taught: Path) -> None:
+    workspace = Workspace(taught)
+    known(workspace, "Rosa Blum", "Rosa Ochs", "Berta Klein", "Berta")
+    game = LiveGame(workspace)
+    game.play(3)
+    assert "here Rosa Blum or here Rosa Ochs" in game.says(Joins("Rosa"))
+    assert game.told(Joins("Berta")) == StaffNote("known already", "user4")
+    assert game.told(Joins("Berta Gross")).kind == "joins"
+    workspace.close()
+
+
+def test_a_person_who_joins_gets_an_id_of_their_own(taught: Path) -> None:
+    workspace = Workspace(taught, users=6)  # two more than are registered
+    names = workspace.names
+    game = LiveGame(workspace)
+    game.play(3)
+    new = game.told(Joins("Berta")).about
+    assert new not in names and workspace.names == names | {new: "Berta"}
+    workspace.close()
+
+
+def test_a_refused_name_leaves_the_group_as_it_was(taught: Path) -> None:
+    workspace = Workspace(taught, users=2)
+    people = workspace.names
+    workspace.store.rename("user4", "Berta")  # who does not play today
+    game = LiveGame(workspace)
+    game.play(3)
+    assert game.told(Joins("Berta")).kind == "cannot"
+    assert workspace.names == people and not game.control.joined
+    game.play(1)
+    assert game.told(Joins("Zita")).kind == "joins"
+    workspace.close()
+
+
 def test_a_full_room_is_named_with_its_seats(taught: Path) -> None:
     workspace = Workspace(taught, users=8)
     game = LiveGame(workspace)
