@@ -177,13 +177,17 @@ class Remarks:
         return Overlooked(shown.number, step, self._due(rule, shown))
 
     def _nothing_changed(self, shown: DemonstratedStep, outcome: Outcome) -> Remark | None:
-        """Return the remark on a step that led nowhere, unless a person or a rule explains it."""
+        """Return the remark on a step that led nowhere, unless something explains it.
+
+        A person, a rule, or the activity's file may: its host may wait until people do something.
+        """
         step, rules = shown.step, self._activity.stage_rules
         led = progress(step.state, outcome, step.after)
         counted = any(
             step.behaviour in (r.behaviour, r.since) for r in rules if r.condition == "count"
         )
-        if led in ("on", "waits") or outcome.response is not None or counted:
+        host = self._activity.expected.get(step.state.situation) == step.behaviour
+        if led in ("on", "waits") or outcome.response is not None or counted or host:
             return None
         if self._shown.called_right(step.state.situation, step.behaviour):
             return None

@@ -213,6 +213,46 @@ def test_a_useless_step_that_is_right_is_not_reported_again(silent: Workspace) -
     assert do(another, "welcome everyone", "ask question", "welcome everyone") == []
 
 
+WAITING = """
+name = "sowing"
+title = "Sowing"
+summary = "1 to 6 people, 15 minutes; you need trays, soil and seeds"
+flags = ["shown"]
+stages = [
+  { name = "start", words = "nobody knows how", when = ["shown is no"] },
+  { name = "done", words = "all have sown", when = ["sown is all"] },
+  { name = "sowing", words = "people sow" },
+]
+expected = [["start", "show steps"], ["sowing", "watch quietly"], ["done", "say goodbye"]]
+[facts]
+sows = { kind = "flag", per = "player", from = ["staff"] }
+[facts.sown]
+steps = { none = [], all = ["every sows is yes"] }
+[people]
+sows = { while = ["shown is yes"], chance = 0.15, yes = 1, no = 0 }
+[behaviours."show steps"]
+does = ["set shown yes"]
+says = ["First the soil, then the seeds."]
+[behaviours."watch quietly"]
+does = []
+says = ["Take your time."]
+[behaviours."say goodbye"]
+does = ["finish"]
+says = ["Goodbye, and water them!"]
+"""
+
+
+def test_waiting_for_people_as_the_file_of_the_activity_says_is_no_useless_step(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "sowing.toml").write_text(WAITING, "utf-8")
+    opened = Workspace(tmp_path / "data", activity=str(tmp_path / "sowing.toml"))
+    teaching = session(opened)
+    assert do(teaching, "show steps", *["watch quietly"] * 3) == []
+    assert teaching.world.observe().situation.stage == "sowing"
+    opened.close()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DECLARED)
 @pytest.mark.parametrize("guided", [False, True])
