@@ -62,8 +62,11 @@ class Paraphrases:
     def meanings(self, *guesses: Words) -> tuple[Meaning, ...]:
         """Return up to three meanings, likeliest first; none if words ask for nothing.
 
-        Of several guesses at what was said, best first, the n-th one counts 1/n.
+        Of several guesses at what was said, best first, the n-th one counts 1/n. If the best one
+        forbids something, the others are probably misheard, and there is no meaning.
         """
+        if guesses and forbids(self._mentions.find(guesses[0]).words):
+            return ()
         likely: defaultdict[str, float] = defaultdict(float)
         users: defaultdict[tuple[str, str | None], float] = defaultdict(float)
         shares = [1 / place for place in range(1, len(guesses) + 1)]

@@ -180,6 +180,12 @@ def test_of_several_guesses_the_likeliest_meaning_on_the_weighted_average_counts
     assert BOOK.paraphrased(guesses[0], "the weather is nice today", "my back hurts") == ()
 
 
+def test_nothing_is_offered_if_the_best_guess_forbids_it() -> None:
+    others = ("do let us tell another joke", "let us tell another joke", "let's tell another joke")
+    assert BOOK.paraphrased(*others)[0].behaviour == "joke"
+    assert BOOK.paraphrased("do not let us tell another joke", *others) == ()
+
+
 def test_a_yes_is_heard_whatever_the_guesses_at_a_sentence_are() -> None:
     heard = AcousticEvidence("yes", "", 0.0, 1.0, 1.0, guesses=("guess the", "guess"))
     assert commanded(heard, BOOK, USUAL, live=False) == (Reply(True), None)
