@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
+from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import TAKEN_OVER, Joins, StaffNote
 from tangy_tui.app.robot_controls import ENDED, RobotControls
@@ -25,6 +26,7 @@ class EndingGames:
 
     supervision: Supervision
     robot: RobotControls
+    autonomy: AutonomyDial
     stopped: bool
     going: bool
     _turn: threading.RLock
@@ -79,6 +81,14 @@ class EndingGames:
         self.supervision.interrupt()
         self.joined, self.goes_on, self.going = True, self.going, True
         return [joins]
+
+    def follow(self, before: EndingGames) -> None:
+        """Go on as the controller of a game that a person has joined, perhaps before a step."""
+        self.goes_on = before.goes_on
+        self.autonomy.turn(before.autonomy.level)
+        gathering = self.supervision.game.changes.gathering
+        if gathering is not None:
+            gathering.choose(before.supervision.game.changes.plan)
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
         """Stop the robot, wait up to `patience` s for it, and log that the game was left."""

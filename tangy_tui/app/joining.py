@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tangy_profiles.game_world import BENCH
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, unaccented
 from tangy_profiles.room import SEAT
 from tangy_tui.app.game_commands import Joins, StaffNote
@@ -12,6 +13,8 @@ from tangy_tui.app.register import add_person
 from tangy_tui.app.rooms import check_places
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
@@ -100,3 +103,9 @@ def resume_joined(workspace: Workspace, world: GameWorld) -> PastGame | None:
     """
     past = find_interrupted(workspace, world)
     return None if past is None else take_up(workspace, past).past
+
+
+def keep_cards(cards: Mapping[str, int], world: LiveWorld) -> None:
+    """Tell a world the cards known before a person joined; the bench deals new ones."""
+    if cards and world.played_in != BENCH:
+        world.cards.dealt.deal(cards)

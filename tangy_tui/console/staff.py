@@ -102,9 +102,9 @@ class StaffLines:
         self._writing = threading.Lock()
         self._write_line = write
         self._prompted, self._going = "", ("", "", ("", tuple[str, ...]()))
-        self._stopped = self._ended = self._by_turns = False
+        self._stopped: bool = before is not None and before._stopped
+        self._ended = self._by_turns = self._leaves = False  # leaves: while no game could begin
         self.played = 0
-        self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
         self._tasks: queue.Queue[Task | None] = queue.Queue()
         self._command = command_reader(self._game.world.activity, find_person)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from textual.constants import ESCAPE_DELAY
@@ -80,11 +79,10 @@ async def play_live(
     )  # fmt: skip
     while played is not None and played.control.joined:
         past = resume_joined(workspace, played.world.played_in)
-        policy, cards = played.control.supervision.policy, played.world.known_cards
-        games -= played.tally.games
+        policy, left = played.control.supervision.policy, played.games - played.tally.games
         played = await _play(
-            program, opening, policy, games=games, seed=seed, teacher=teacher, past=past,
-            setup=setup, goes_on=played.control.goes_on, cards=cards,
+            program, opening, policy, games=left, seed=seed, teacher=teacher, past=past,
+            setup=setup, before=played,
         )  # fmt: skip
 
 
@@ -99,12 +97,11 @@ async def _play(
     past: PastGame | None,
     setup: SetUp,
     set_up: bool = False,
-    goes_on: bool = False,
-    cards: Mapping[str, int] | None = None,
+    before: LiveScreen | None = None,
 ) -> LiveScreen | None:
     """Play with the robot on; return the screen, whose game may only be interrupted.
 
-    `goes_on` continues a resumed game at once; `cards` are those known before a person joined it.
+    `before` is the screen of a game that a person has joined: it goes on as it was.
     """
     from tangy_tui.app.switching_on import SwitchingOn
 
@@ -117,7 +114,7 @@ async def _play(
             world = await _switch_on(program, robot)
         if world is None:
             return None
-        from tangy_tui.app.joining import Admission
+        from tangy_tui.app.joining import Admission, keep_cards
         from tangy_tui.learning.policies import load_policy
         from tangy_tui.text.calls import REHEARSAL
         from tangy_tui.ui.screens.live import LiveScreen
@@ -133,10 +130,11 @@ async def _play(
             workspace, supervision, world, games=games, teacher=teacher or setup.on_duty, past=past
         )
         screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
-        screen.control.goes_on = screen.picture.goes_on = goes_on
         screen.control.admission = Admission(workspace, world)
-        if cards and world.played_in != game_world.BENCH:  # the bench deals new ones
-            world.cards.dealt.deal(cards)
+        if before is not None:
+            screen.control.follow(before.control)
+            screen.picture.goes_on = before.control.goes_on
+            keep_cards(before.world.known_cards, world)
         if program.hearing is not None:
             program.hearing.ears.begin()
         await program.push_screen_wait(screen)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tangy_profiles.game_world import BENCH
-
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -63,14 +61,13 @@ class LiveLines:
             world: the robot's world, switched on.
             past: an interrupted game to resume first.
         """
-        from tangy_tui.app.joining import Admission, resume_joined
+        from tangy_tui.app.joining import Admission, keep_cards, resume_joined
         from tangy_tui.verbs.playing import staff_lines
 
         before = self._control
         if before is not None:
             past = resume_joined(self._workspace, world.played_in)
-            if self._cards and world.played_in != BENCH:  # the bench deals new ones
-                world.cards.dealt.deal(self._cards)
+            keep_cards(self._cards, world)
         control, lines = staff_lines(
             self._workspace,
             supervision,
@@ -80,7 +77,8 @@ class LiveLines:
             typed=self._typed,
             before=self._lines,
         )
-        control.goes_on = before is not None and before.goes_on
+        if before is not None:
+            control.follow(before)
         control.admission = Admission(self._workspace, world)
         self._control, self._lines = control, lines
         fine = lines.run(self._left)

@@ -16,7 +16,15 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import FRONT
 from tangy_tui.app.command_grammar import read_command
-from tangy_tui.app.game_commands import AskFor, GoesAway, Joins, StaffNote, StopRobot
+from tangy_tui.app.game_commands import (
+    AskFor,
+    GoesAway,
+    Joins,
+    SetAutonomy,
+    SetPace,
+    StaffNote,
+    StopRobot,
+)
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import find_interrupted, take_up
 from tangy_tui.app.joining import Admission, resume_joined
@@ -126,6 +134,20 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     joined = [e.record for e in workspace.store.events(GameChange) if e.record.what == "joined"]
     assert [(one.person, one.by) for one in joined] == [("user5", "Ada")]
     assert not list(workspace.store.events(GameEnding))
+    workspace.close()
+
+
+def test_what_staff_have_set_stays_if_somebody_joins_before_a_step(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.control.apply(SetAutonomy("each"))
+    before.control.apply(SetPace(40))
+    before.told(Joins("Berta"))
+    assert resume_joined(workspace, LIVE) is None
+    after = LiveGame(workspace)
+    after.control.follow(before.control)
+    assert after.control.autonomy.level == "each" and after.world.pace == 40
+    assert after.world.game_plan == before.world.game_plan
     workspace.close()
 
 

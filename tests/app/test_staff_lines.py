@@ -65,6 +65,23 @@ def told(
     return written, games.run(1)
 
 
+def test_a_game_that_stopped_early_counts_after_a_person_has_joined(workspace: Workspace) -> None:
+    learnt, _ = load_policy(workspace.store, workspace.activity)
+    typed = iter(["pause"])
+
+    def lines(before: StaffLines | None = None) -> StaffLines:
+        control = GameController(workspace.supervision(learnt, 4, asks=True), "Ada")
+        said = list[str]()
+        return StaffLines(
+            control, workspace.name, str, lambda: next(typed, None), said.append,
+            speed=50, before=before,
+        )  # fmt: skip
+
+    first = lines()
+    assert not first.run(1)
+    assert not lines(first).run(0)
+
+
 def test_a_game_plays_to_its_end_after_the_last_line(workspace: Workspace) -> None:
     written, ended = told(workspace)
     assert ended and NO_MORE in written

@@ -9,6 +9,7 @@ import pytest
 
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.game_commands import SetAutonomy
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.live_games import play_live
@@ -54,6 +55,8 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         await paused_after(pilot, robot.links[0], 2)
         first = live(pilot)
         called = tuple(first.world.called)
+        first.control.apply(SetAutonomy("each"))
+        first.games += 1  # as with another game that follows
         await pilot.press("L")
         await until_shown(pilot, lambda: "somebody new" in pilot.text())
         await pilot.press(*"new", "enter")
@@ -67,3 +70,4 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         assert workspace.name("user5") == "Berta"
         assert tuple(live(pilot).world.called)[: len(called)] == called
         assert not live(pilot).control.going  # as it was before
+        assert live(pilot).control.autonomy.level == "each" and live(pilot).games == 2
