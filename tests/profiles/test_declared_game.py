@@ -15,6 +15,7 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import FactCondition
+from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.speech import filled, media, words
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_sim.worlds.declared_world import DeclaredWorld
@@ -37,6 +38,19 @@ def game(trivia: DeclaredActivity) -> DeclaredGame:
     game.execute("welcome everyone", None)
     game.execute("ask question", "ann")
     return game
+
+
+def test_the_turn_of_the_next_person_is_progress_until_everybody_had_it() -> None:
+    game = DeclaredGame(declared("memory").declaration, PLAYERS, tuple(range(5)))
+    watch, led = ProgressWatch(game), list[str]()
+    for name in ("lay out cards", "name a pair", *["pass the turn"] * 6):
+        game.now += 3.0
+        watch.begin(game)
+        assert game.execute(name, "ann" if name == "name a pair" else None).completed
+        watch.done(game)
+        led.append(watch.end(game))
+    two_misses = led[4:]  # of ann, ben, and cat, who had the turn with so many before
+    assert led[:4] == ["on"] * 4 and two_misses == ["on", "on", "back", "back"]
 
 
 @pytest.mark.parametrize("answer", ["b", "B", "eight", "Eight!"])

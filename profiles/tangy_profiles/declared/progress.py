@@ -31,13 +31,13 @@ class ProgressWatch:
         self._acted = game.differs(self._last)  # people, in between
         if self._acted:
             self._been.clear()
-        self._been.add(state_key(game))
+        self._been.add(_state(game))
         self._last = self._before = game.copy()
         self._progress = "none"
 
     def done(self, game: DeclaredGame) -> None:
         """Judge the effects of the behaviour, before people act."""
-        key = state_key(game)
+        key = _state(game)
         self._progress = progress(self._before, game)
         if self._progress == "on" and key in self._been:
             self._progress = "back"
@@ -60,11 +60,19 @@ def progress(before: DeclaredGame, after: DeclaredGame) -> Progress:
     return "waits" if _waits(after) else "none"
 
 
+def _state(game: DeclaredGame) -> Hashable:
+    """Return what can influence the rest of the game, and whose turn it is.
+
+    For a search, games are alike if only another person has the turn; for that person they are not.
+    """
+    return state_key(game), game.turn
+
+
 def _untimed(game: DeclaredGame) -> Hashable:
     """Return what can influence the rest of the game, apart from how late it is."""
     still = game.copy()
     still.now = 0.0
-    return state_key(still)
+    return _state(still)
 
 
 def _timers(game: DeclaredGame) -> dict[Key, float]:
