@@ -317,6 +317,7 @@ NoteKind = Literal[
     "asks first",
     "halted first",
     "no game",
+    "joining",
     "no robot",
     "nothing called",
     "not told",

@@ -246,7 +246,7 @@ class GameController(EndingGames):
 
     def _dispatch(self, command: GameCommand) -> list[Result]:
         if self.supervision.over and not isinstance(command, WITHOUT_GAME):
-            return [StaffNote("no game")]
+            return [StaffNote("joining" if self.joined else "no game")]
         if isinstance(command, PlanCommand):
             return self.plan.do(command)
         match command:

@@ -88,6 +88,7 @@ REFUSALS: tuple[NoteKind, ...] = (
     "asks first",
     "halted first",
     "no game",
+    "joining",
     "no robot",
     "nothing called",
     "not called",
@@ -156,7 +157,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"{name(about)} is here."
         case "joins":
             return f"{name(about)} joins: {noted.words}. Tangy sets itself up for one more person."
-        case "no name" | "nobody joins" | "not at front" as why:
+        case "no name" | "nobody joins" | "not at front" | "joining" as why:
             return joining.REFUSED[why]
         case "known already":
             return joining.known_words(name(about))

@@ -9,9 +9,10 @@ from tangy_tui.text.numbers import listed
 REFUSED = {
     "no name": "Type the name as well, as in: add Berta.",
     "nobody joins": "Nobody new can join this game. Add them before the next one.",
+    "joining": "Not now: somebody is just joining. Say it again when the game goes on.",
     "not at front": "Tangy could not drive to the front, so nobody has joined yet. Try again.",
 }
-"""Why nobody can join, by the kind of note."""
+"""Why nobody can join, or nothing else be done meanwhile, by the kind of note."""
 
 
 def known_words(name: str) -> str:

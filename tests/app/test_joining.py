@@ -102,6 +102,7 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     note = before.told(Joins("Berta"))
     assert (note.kind, note.about) == ("joins", "user5") and before.control.joined
     assert before.control.supervision.over
+    assert "when the game goes on" in before.says(Joins("Carl"))
     do, what = before.link.done[-1]
     assert do == "go" and what["name"] == FRONT  # where the robot process starts anew
     past = resume_joined(workspace, LIVE)
