@@ -277,7 +277,8 @@ def live(
                 played = LiveGames(workspace, supervision, past)
                 to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
         while console is not None and console.joined:
-            with switched_on(opening(number), stepped=stepped, tell=tell) as there:
+            again = switched_on(opening(number), stepped=stepped, tell=tell)
+            with console.keeping(f"tangy live --resume{common.as_given(data)}"), again as there:
                 tell_screen(there)
                 supervision = workspace.supervision(
                     console.policy, number, asks=asks, world=there, rehearsal=rehearsal

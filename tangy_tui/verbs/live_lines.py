@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from tangy_tui.text.interruptions import kept_words
+from tangy_tui.verbs.common import print_line
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.past_game import PastGame
@@ -30,6 +34,7 @@ class LiveLines:
             typed: the lines of a terminal; None: standard input is none.
         """
         self._workspace, self._by, self._typed = workspace, by, typed
+        self._write = print_line if typed is None else typed.write
         self._left = games
         self._control: GameController | None = None
         self._lines: StaffLines | None = None
@@ -39,6 +44,20 @@ class LiveLines:
     def joined(self) -> bool:
         """Whether a game was interrupted for a new person, and is to be played on."""
         return self._control is not None and self._control.joined
+
+    @contextmanager
+    def keeping(self, command: str) -> Iterator[None]:
+        """Tell how to go on with a joined game if the robot does not come on again.
+
+        Args:
+            command: the command that resumes it.
+        """
+        try:
+            yield
+        except BaseException:
+            if self.joined:
+                self._write(kept_words(command))
+            raise
 
     @property
     def policy(self) -> Policy:
