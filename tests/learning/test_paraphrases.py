@@ -186,6 +186,31 @@ def test_nothing_is_offered_if_the_best_guess_forbids_it() -> None:
     assert BOOK.paraphrased("do not let us tell another joke", *others) == ()
 
 
+@pytest.mark.parametrize(("guesses", "offered"), [
+    (("my back hurts", "let us tell another joke"), False),
+    (("let us tell another joke", "my back hurts"), True),
+])  # fmt: skip
+def test_a_free_wording_is_offered_only_if_the_guesses_agree(
+    guesses: tuple[str, ...], offered: bool
+) -> None:
+    assert BOOK.paraphrased(*guesses), "likely enough for words that were typed"
+    evidence = AcousticEvidence("the dog is out", "", -0.2, 1.0, 1.0, guesses=guesses)
+    said = understand(evidence, BOOK, USUAL)
+    assert isinstance(said, Say) and said.commands is not None
+    assert [command.behaviour for command in said.commands] == ["joke"] * offered
+
+
+def test_sound_that_fits_badly_counts_against_words_but_not_against_guesses_that_agree() -> None:
+    text = "let us tell another joke"
+    alone = AcousticEvidence(text, "", -1.0, 1.0, 1.0)
+    without, agreed = (
+        understand(one, BOOK, USUAL) for one in (alone, replace(alone, guesses=(text,)))
+    )
+    assert isinstance(without, Say) and isinstance(agreed, Say)
+    assert agreed.commands and agreed.confidence == BOOK.paraphrased(text)[0].confidence
+    assert without.confidence < agreed.confidence - 0.05
+
+
 def test_a_yes_is_heard_whatever_the_guesses_at_a_sentence_are() -> None:
     heard = AcousticEvidence("yes", "", 0.0, 1.0, 1.0, guesses=("guess the", "guess"))
     assert commanded(heard, BOOK, USUAL, live=False) == (Reply(True), None)
