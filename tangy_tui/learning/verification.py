@@ -14,10 +14,14 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.state import EVERYBODY, FRONT, ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
+from tangy_tui.language.words import clean
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.behaviour import Behaviour
+
+FEWEST_LETTERS = 3
+"""Typed letters from which the beginning of a phrase is enough."""
 
 RefusalKind: TypeAlias = Literal[
     "no question",
@@ -167,7 +171,7 @@ class Verifier:
         """Understand a command, and ask about it."""
         self.question, self._typed = None, said.commands is None
         if said.commands is None:
-            command = self._phrasebook.understand(said.text)
+            command = self._typed_command(said.text)
             commands = () if command is None else (command, *self._alternatives(command))
         else:
             commands = said.commands
@@ -183,6 +187,29 @@ class Verifier:
         if not said.sure:
             return self._offer(said, commands)
         return self._ask(commands[0], commands[1:])
+
+    def _typed_command(self, text: str) -> Command | None:
+        """Understand typed words; the first letters of one act's phrases are enough."""
+        command = self._phrasebook.understand(text)
+        if command is not None and command.confidence >= 1:
+            return command
+        return self._completed(text) or command
+
+    def _completed(self, text: str) -> Command | None:
+        """Return the command that first letters can only mean, or None.
+
+        If they fit one behaviour for several people, they mean the phrase that names nobody.
+        """
+        if len(text.strip()) < FEWEST_LETTERS:
+            return None
+        found = [self._phrasebook.understand(one) for one in self._phrasebook.complete(text)]
+        known = [one for one in found if one is not None]
+        if len({one.behaviour for one in known}) != 1:
+            return None
+        meant = [one for one in known if not one.arguments] or known
+        if len({one.arguments.get("user") for one in meant}) != 1:
+            return None
+        return replace(meant[0], heard=clean(text))
 
     def sayable(self, usual: Sequence[str] = (), world: object = None) -> tuple[str, ...]:
         """Return a phrase for each behaviour that can be done now, best first.

@@ -86,6 +86,7 @@ LEAVE = "Leave; your steps are kept"
 
 NO_STEPS = "No steps yet."
 
+TYPE_HERE = "type a command (its first letters are enough), or ? for help"
 SAY_OR_TYPE = "Say or type"
 STOPPED = "STOP: the simulated robot stands still."
 WHICH_STEP = "Choose the step first: up and down, or type again 7."

@@ -8,8 +8,8 @@ from tangy_profiles.reading import plain
 from tangy_tui.text.numbers import counted
 
 HELP = (
-    "Type what Tangy should do, or one of: undo, redo, again N, where, seen, why, help, next, "
-    "learn, play, quit. Enter alone lists what can be said now."
+    "Type what Tangy should do (the first letters are enough), or one of: undo, redo, again N, "
+    "where, seen, why, help, next, learn, play, quit. Enter alone lists what can be said now."
 )
 NOTHING_FITS = "No command fits. Empty the line and press Tab to see what you can say."
 MEANINGS = (

@@ -20,7 +20,15 @@ from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Finished, Next, StepUndone, Undo
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.learning.verification import Asked, NotUnderstood, Refused, Rejected, Reply, Say
+from tangy_tui.learning.verification import (
+    Asked,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Verifier,
+)
 from tangy_tui.text.refusals import refused_words
 from tangy_tui.world import World
 
@@ -166,6 +174,58 @@ def test_behaviours_for_a_person_are_refused_while_nobody_asks(store: Store) -> 
         assert isinstance(refused, Refused)
         assert refused.why == "nobody asks"
     assert teaching.question is None
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("cal", "call number"),
+        ("CAL", "call number"),
+        (" gre", "greet everyone"),
+        ("go to f", "go to front"),
+    ],
+)
+def test_the_first_letters_of_one_command_are_enough(store: Store, typed: str, meant: str) -> None:
+    teaching = begun(store)
+    (whole,) = teaching.apply(Say(meant))
+    (begin,) = teaching.apply(Say(typed))
+    assert isinstance(whole, Asked)
+    assert isinstance(begin, Asked)
+    assert (begin.behaviour, begin.question, begin.others) == (whole.behaviour, whole.question, ())
+    assert begin.heard == typed.strip()
+
+
+@pytest.mark.parametrize("typed", ["g", "go", "go to", "ca"])
+def test_letters_that_may_mean_several_commands_are_no_command(store: Store, typed: str) -> None:
+    (came,) = begun(store).apply(Say(typed))
+    assert not isinstance(came, Asked)
+
+
+def test_the_first_letters_for_a_person_mean_who_asks_first(store: Store) -> None:
+    teaching = begun(store)
+    (none_asks,) = teaching.apply(Say("go to u"))
+    assert isinstance(none_asks, Refused)
+    teach(teaching, "greet everyone")
+    while not (asking := teaching.world.scene().requests):
+        teach(teaching, "cal")
+    (asked,) = teaching.apply(Say("go to u"))
+    assert isinstance(asked, Asked)
+    assert asked.target == asking[0]
+    assert teaching.name(asking[0]) in asked.question
+
+
+def test_the_first_letters_of_a_name_mean_that_person(store: Store) -> None:
+    people = load_people(3)
+    named = [
+        replace(p, name=name) for p, name in zip(people, ("Rosa", "Olga", "Rolf"), strict=True)
+    ]
+    verifier = begun(store, users=3).phrasebook_for(named)
+    state = begun(store, users=3).world.observe
+    asks = Verifier(BINGO, verifier, state, {p.id: p.name for p in named})
+    (olga, ro) = asks.say(Say("go to ol")), asks.say(Say("go to ro"))
+    assert isinstance(olga, Asked)
+    assert olga.target == people[1].id
+    assert not isinstance(ro, Asked)  # Rosa or Rolf
 
 
 def test_the_robot_can_be_sent_to_a_player_by_number_or_name(store: Store) -> None:

@@ -135,6 +135,7 @@ class TeachScreen(TangyScreen[bool]):
         yield CommandBar(
             lambda typed: self.teaching.phrasebook.complete(typed),
             sayable=lambda: self.teaching.sayable,
+            placeholder=text.TYPE_HERE,
             letters=False,
             id="command",
         )
