@@ -34,6 +34,7 @@ WHICH_ANSWER = "Yes could mean several answers here. Type a number, or no to dec
 NUMBER_OR_ESC = "Press the number of an answer, or Esc."
 SAY_A_NUMBER = "Please say the number of an answer, or no."
 LATER = "decide later"
+LEARN_LATER = "Decide later, and let Tangy learn"
 GO_ON = "go on"
 NOT_ALWAYS = "no, and do not ask again"
 

@@ -9,6 +9,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import RemarkAnswer
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.dialogs.remark import RemarkDialog
 from tangy_tui.ui.program import Program
@@ -97,6 +98,17 @@ async def test_escape_defers_the_remark(run: Run, workspace: Workspace) -> None:
         assert not read_library(workspace.store, "bingo").resolutions
         await pilot.press(*"call")
         assert pilot.app.screen.query_one(CommandBar).text == "call"
+
+
+@pytest.mark.slow
+async def test_learn_defers_the_remark_and_learns(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        await pilot.press("f5")
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, MessageDialog)  # no game has come to its end
+        assert not read_library(workspace.store, "bingo").resolutions
 
 
 @pytest.mark.slow

@@ -18,6 +18,7 @@ from tangy_tui.learning.teaching_events import Remark, RemarkAnswer
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.questions import SAID_TOO_EARLY, TOO_EARLY
 from tangy_tui.text.remarks import (
+    LEARN_LATER,
     NUMBER_OR_ESC,
     SAY_A_NUMBER,
     answer_words,
@@ -48,6 +49,7 @@ class RemarkDialog(Dialog[RemarkAnswer]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1", "nothing", "The answer of this number", key_display="1-4"),
         *bind("undo"),
+        *bind("learn", "nothing", name=LEARN_LATER),
         Binding("escape", "nothing", "Decide later"),
     ]
     HELP = (
@@ -82,6 +84,8 @@ class RemarkDialog(Dialog[RemarkAnswer]):
         self._clock = clock
         self._keys = FreshKeys()
         self._told = ""
+        self.learns = False
+        """Whether the teacher has put it off in order to let Tangy learn."""
 
     def compose(self) -> ComposeResult:
         """Lay out the remark and the answers."""
@@ -99,10 +103,12 @@ class RemarkDialog(Dialog[RemarkAnswer]):
         """Answer with a number or esc, if the remark was visible before."""
         if keymap_of(self.app).action(event.key) == "undo":
             return  # it means the last step, whether or not the remark was seen
-        known = event.key == "escape" or event.key in self._answers
+        learns = keymap_of(self.app).action(event.key) == "learn"
+        known = event.key == "escape" or event.key in self._answers or learns
         if not self._keys.take(event):
             self._tell(TOO_EARLY if known else NUMBER_OR_ESC)
-        elif event.key == "escape":
+        elif event.key == "escape" or learns:
+            self.learns = learns
             self.answer("later")
         elif known:
             self.answer(self._answers[event.key][0])

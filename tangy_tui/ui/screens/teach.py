@@ -363,10 +363,13 @@ class TeachScreen(TangyScreen[bool]):
 
     async def _remark(self, remark: Remark) -> None:
         """Ask about a remark in place."""
-        answer = await self.alone(remark_dialog(remark, self.teaching, self._listener.aloud))
+        dialog = remark_dialog(remark, self.teaching, self._listener.aloud)
+        answer = await self.alone(dialog)
         if answer == "later":
             self._picture.remark(remark)  # the dialog has shown it; from now on the log does
         self._apply(Settle(answer))
+        if dialog.learns:
+            self.action_perform("learn")
 
     async def _verify(self, asked: Asked | Offered) -> None:
         """Verify a command, and apply the answer once the dialog is removed."""
