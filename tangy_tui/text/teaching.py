@@ -10,21 +10,16 @@ from tangy_tui.learning.quality import missed_end
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
-    Contradicted,
-    EndedEarly,
     Executed,
     Finished,
-    NewWording,
     NoRule,
-    NothingChanged,
-    Overlooked,
+    Remark,
     RuleChoice,
     Ruled,
     RuleUndone,
     Settled,
     StepUndone,
     TeachingEvent,
-    WrongPerson,
 )
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
 from tangy_tui.text.coach import GUIDED, arranged_words
@@ -40,6 +35,8 @@ if TYPE_CHECKING:
 
 def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "Y") -> list[str]:
     """Format one event of a teaching session in lines; `yes` is what to type for yes."""
+    if isinstance(event, Remark):
+        return remark_lines(event, teaching.activity, teaching.name, teaching.demonstration.id)
     match event:
         case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
             return verification_lines(event, yes)
@@ -49,16 +46,6 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
                 f"{number}. {words}",
                 f"   Tangy says: {speech}",
             ]
-        case (
-            Contradicted()
-            | Overlooked()
-            | WrongPerson()
-            | EndedEarly()
-            | NothingChanged()
-            | NewWording()
-        ):
-            game = teaching.demonstration.id
-            return remark_lines(event, teaching.activity, teaching.name, game)
         case Settled():
             return [settled_words(event, teaching.activity)]
         case Announced(arranged):

@@ -16,21 +16,15 @@ from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
-    Contradicted,
-    EndedEarly,
     Executed,
     Finished,
-    NewWording,
     NoRule,
-    NothingChanged,
-    Overlooked,
     Remark,
     Ruled,
     RuleUndone,
     Settled,
     StepUndone,
     TeachingEvent,
-    WrongPerson,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.monitoring.attention import goes_to_people
@@ -108,19 +102,13 @@ class TeachingPicture:
 
     def tell(self, event: TeachingEvent, *, asked: bool) -> None:
         """Show the result of a command; an `asked` remark is shown in its dialog only."""
+        if isinstance(event, Remark):
+            if not asked:
+                self.remark(event)
+            return
         match event:
             case Executed():
                 self.step(event)
-            case (
-                Contradicted()
-                | Overlooked()
-                | WrongPerson()
-                | EndedEarly()
-                | NothingChanged()
-                | NewWording()
-            ):
-                if not asked:
-                    self.remark(event)
             case Settled():
                 self._log.write(settled_words(event, self._teaching.activity), "dim")
             case Announced(arranged):
