@@ -43,6 +43,7 @@ from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
     Discard,
+    EndedEarly,
     Executed,
     Finish,
     Finished,
@@ -385,7 +386,10 @@ class TeachingSession:
         except NotAsBefore:
             return [Refused("redo came out otherwise")]
         self._undone.pop()
-        self._remarks.open = None  # it was made when the step was first shown
+        remark, self._remarks.open = self.remark, None  # it was made when the step was first shown
+        if isinstance(remark, EndedEarly):  # but each ending is told of
+            self._remarks.open = remark
+            events.insert(1, remark)
         return events
 
     def _replay(self, demonstration: Demonstration) -> ReplayedGame | None:

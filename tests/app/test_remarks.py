@@ -22,6 +22,7 @@ from tangy_tui.learning.teaching_events import (
     EndedEarly,
     NothingChanged,
     Overlooked,
+    Redo,
     Remark,
     Settle,
     Settled,
@@ -32,8 +33,6 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
-
-REMARKS = (Contradicted, Overlooked, WrongPerson, EndedEarly, NothingChanged)
 
 DECLARED = sorted(set(shipped_activities()) - {"bingo"})
 
@@ -59,7 +58,7 @@ def show(teaching: TeachingSession, phrase: str) -> list[TeachingEvent]:
 
 
 def remarks(events: list[TeachingEvent]) -> list[Remark]:
-    return [event for event in events if isinstance(event, REMARKS)]
+    return [event for event in events if isinstance(event, Remark)]
 
 
 def do(teaching: TeachingSession, *phrases: str) -> list[Remark]:
@@ -143,6 +142,18 @@ def test_a_game_that_ends_early_is_reported_with_the_missing_behaviour(
     assert remark.lacks == "celebrate"
     assert [type(event) for event in teaching.apply(Settle("undo"))] == [StepUndone]
     assert not teaching.demonstration.finished
+
+
+def test_an_end_that_is_redone_is_reported_again(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    do(teaching, "greet everyone")
+    (first,) = do(teaching, "say goodbye")
+    for _ in range(2):
+        teaching.apply(Undo())
+        events = teaching.apply(Redo())
+        assert remarks(events) == [first]
+        assert teaching.remark == first
+    assert [type(event) for event in teaching.apply(Settle("undo"))] == [StepUndone]
 
 
 def test_an_early_end_is_reported_before_a_contradiction(workspace: Workspace) -> None:
