@@ -174,6 +174,8 @@ class GameEnding(EventRecord):
 
     `pauses` is how often the robot waited for late data, and `paused_seconds` for how long. `looks`
     is the number of looks at the attended person's card, and `looks_wrong` how many were outvoted.
+    `due` is the behaviour that the activity expected instead of the one that ended the game, and
+    `rounds_left` the number of rounds still to come.
     """
 
     game: str
@@ -183,6 +185,8 @@ class GameEnding(EventRecord):
     paused_seconds: Sparse[float] = 0.0
     looks: Sparse[Count] = 0
     looks_wrong: Sparse[Count] = 0
+    due: Sparse[str] = ""
+    rounds_left: Sparse[Count] = 0
 
 
 Criticality = Literal["critical", "non-critical"]

@@ -188,3 +188,5 @@ class Outcome(NamedTuple):
     """The answers that were not judged, in order."""
     progress: Progress | None = None
     """Where it led the game, people's acts included; None if only the states can tell."""
+    rounds_left: int = 0
+    """How many rounds were still to come when the action ended the game."""

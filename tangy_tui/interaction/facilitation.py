@@ -36,6 +36,7 @@ from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.interaction.reading_error import learnt_error
 from tangy_tui.interaction.uncertainty import remedy_for, which_of, why_not
 from tangy_tui.language.commands import Learnt, Phrasebook
+from tangy_tui.learning.early_ends import due_instead
 from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
@@ -121,6 +122,7 @@ class Facilitation:
         """The person who refused a request during the current visit."""
         self._said: tuple[str, str, str] | None = None
         """The last person, behaviour and strategy of this visit."""
+        self._last: Acted | None = None
 
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
@@ -168,7 +170,7 @@ class Facilitation:
         self.observation.begin(state)
         self._game, self.games, self.steps = game, number, steps
         self.over = False
-        self.question = self._refused = self._said = None
+        self.question = self._refused = self._said = self._last = None
 
     def step(self) -> list[GameEvent]:
         """Carry out the next behaviour and return the events.
@@ -370,14 +372,22 @@ class Facilitation:
     def _log(self, acted: Acted, teacher: str) -> GameEnded | None:
         """Log a step and the response; return the end of the game, if it is over."""
         self.log.step(self._game, acted, teacher)
+        self._last = acted
         return self._end(None) if self.world.over and not self.looked_over else None
 
     def _end(self, reason: str | None) -> GameEnded:
         self.over = True
+        due, left = ("", 0) if reason or self._last is None else self._early(self._last)
         count, seconds = self.world.pauses
         ending = GameEnding(
             game=self._game, steps=self.steps, stopped=reason, pauses=count, paused_seconds=seconds,
             looks=self.observation.counted.looks, looks_wrong=self.observation.counted.wrong,
+            due=due, rounds_left=left,
         )  # fmt: skip
         self._store.append(ending)
-        return GameEnded(self._game, self.steps, reason, (count, seconds))
+        return GameEnded(self._game, self.steps, reason, (count, seconds), due, left)
+
+    def _early(self, last: Acted) -> tuple[str, int]:
+        """Return the behaviour that was due instead of the last one, and the rounds left."""
+        due = due_instead(self._activity, last.state.situation, last.action.behaviour.name)
+        return due, last.outcome.rounds_left

@@ -99,13 +99,16 @@ class DoneOnce:
 class GameEnded:
     """The game is over: played to its end, or stopped for a reason that is given in words.
 
-    `pauses` is how often the robot waited for late data, and for how many s in all.
+    `pauses` is how often the robot waited for late data, and for how many s in all. `due` is the
+    behaviour expected instead of the one that ended the game, "" if the end was due.
     """
 
     game: str
     steps: int
     stopped: str | None
     pauses: tuple[int, float] = (0, 0.0)
+    due: str = ""
+    rounds_left: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,6 +34,8 @@ class Tally:
     """How often Tangy asked what to do."""
     stopped: list[tuple[int, str]] = field(default_factory=list)
     """The games that were stopped: their number, from 1, and the reason."""
+    early: list[tuple[int, str, int]] = field(default_factory=list)
+    """The games that ended early: their number, the behaviour that was due, the rounds left."""
     injected: list[dict[str, Any]] = field(default_factory=list)
     """The faults to inject: the game, the fault, and the step.
 
@@ -64,6 +66,8 @@ class Tally:
                     self.paused_seconds += event.pauses[1]
                     if event.stopped is not None:
                         self.stopped.append((self.games, event.stopped))
+                    if event.due:
+                        self.early.append((self.games, event.due, event.rounds_left))
                 case Unsure():
                     self.asked += 1
 
@@ -116,6 +120,7 @@ class Tally:
         for (_, behaviour), count in self._done.items():
             behaviours[behaviour] += count
         visits = self.games * len(beliefs)
+        early = [{"game": game, "due": due, "rounds_left": left} for game, due, left in self.early]
         reasons = [{"reason": reason} for _, reason in self.stopped]
         return {
             "games": self.games,
@@ -142,4 +147,5 @@ class Tally:
             "stopped": [{"game": game, "reason": reason} for game, reason in self.stopped],
             "asked": self.asked,
             "pauses": {"count": self.pauses, "seconds": round(self.paused_seconds, 2)},
+            **({"ended_early": early} if early else {}),
         }

@@ -11,6 +11,7 @@ from statistics import median
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.learning.conflicts import Conflict, find_conflicts
+from tangy_tui.learning.early_ends import missed_end
 from tangy_tui.learning.library_entries import Library, LibraryEntry
 
 MUCH_LONGER = 2.0
@@ -82,13 +83,6 @@ def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
     failed = sum(not step.completed for step in shown.steps)
     if failed:
         yield f"{_counted(failed, 'step')} that could not be carried out"
-
-
-def missed_end(activity: Activity, shown: Demonstration) -> str:
-    """Return the behaviour that ends a game, if the demonstration never got there; else ""."""
-    ends = {r.stage: r.behaviour for r in activity.stage_rules if r.condition == "after"}
-    reached = {step.state.stage for step in shown.steps}
-    return "" if reached.intersection(ends) else next(iter(ends.values()), None) or ""
 
 
 def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict]) -> Iterator[str]:

@@ -17,6 +17,7 @@ from tangy_profiles.state import FRONT, Outcome, Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.contradictions import Contradictions
+from tangy_tui.learning.early_ends import due_instead, ending
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.effects import progress
 from tangy_tui.learning.library import read_library
@@ -93,6 +94,8 @@ class Remarks:
             outcome: what the world returned for it.
             over: whether the game is over after it.
         """
+        ends = shown.step.behaviour in ending(self._activity) and outcome.completed
+        over = over or ends  # a guided game goes on from an earlier moment
         known = self.usual(shown.step.state.situation)
         earlier = self._shown.found(shown)
         self.open = None
@@ -167,8 +170,9 @@ class Remarks:
         rule = next(r for r in activity.stage_rules if r.stage == state.stage)
         if over and rule.condition != "after":
             ends = [r.behaviour for r in activity.stage_rules if r.condition == "after"]
-            if ends and self._is_news("end", state.situation):
-                return EndedEarly(shown.number, step, ends[0])
+            lacks = ends[0] if ends else due_instead(activity, state.situation, step.behaviour)
+            if lacks and self._is_news("end", state.situation):
+                return EndedEarly(shown.number, step, lacks)
             return None
         if not self._passes_over(rule, behaviour, shown):
             return None

@@ -30,6 +30,7 @@ SHORTEST = 4
 """Characters of an id that identify a game."""
 LAST, ALL = "last", "all"
 TO_ITS_END = "played to its end"
+ENDED_EARLY = "ended early: “{due}” was still to come"
 BROKEN_OFF = "it has no end in the log: it is still going on, or the program was broken off"
 
 
@@ -63,20 +64,25 @@ class Game:
     """How often the robot waited for late data, and for how many s."""
     away: frozenset[str] = frozenset()
     """Those whom staff marked as absent, and who did not come during the game."""
+    due: str = ""
+    """The behaviour expected instead of the one that ended it; "" if the end was due."""
+    rounds_left: int = 0
     file: str = ""
     """The path of the activity's file, if it comes neither with Tangy nor with a package."""
 
     @property
     def smooth(self) -> bool:
         """Whether it was played to its end."""
-        return self.ended is not None and self.stopped is None
+        return self.ended is not None and self.stopped is None and not self.due
 
     @property
     def ending(self) -> str:
         """How it ended, in words."""
         if self.ended is None:
             return BROKEN_OFF
-        return TO_ITS_END if self.stopped is None else self.stopped
+        if self.stopped is not None:
+            return self.stopped
+        return ENDED_EARLY.format(due=self.due) if self.due else TO_ITS_END
 
     def to_json(self) -> dict[str, Any]:
         """Return the game as `--json` lists it."""
@@ -93,6 +99,8 @@ class Game:
             "ended": self.ended and self.ended.isoformat(),
             "stopped": self.stopped,
             "ending": self.ending,
+            "due": self.due,
+            "rounds_left": self.rounds_left,
             "world": self.world,
             "asks_in_visit": self.asks[0],
             "asks_in_game": self.asks[1],
@@ -186,6 +194,8 @@ def _game(
         last_seq=None if end is None else end.seq,
         file=begun.file,
         stopped=None if ending is None else ending.stopped,
+        due="" if ending is None else ending.due,
+        rounds_left=0 if ending is None else ending.rounds_left,
         world=world,
         asks=(begun.asks_in_visit, begun.asks_in_game),
         pauses=(0, 0.0) if ending is None else (ending.pauses, ending.paused_seconds),

@@ -21,6 +21,7 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.games import ENDED_EARLY
 from tangy_tui.text.changes import changed_lines
 from tangy_tui.text.decisions import addressed_words, because_words, why_words
 from tangy_tui.text.faults import fault_lines
@@ -112,10 +113,21 @@ def game_lines(
 
 
 def ended_words(ended: GameEnded) -> str:
-    """Tell how a game ended, and why if it stopped early."""
-    if ended.stopped is None:
-        return f"The game is over after {ended.steps} steps."
-    return f"The game stopped after {ended.steps} steps. {ended.stopped}"
+    """Tell how a game ended, and why if it stopped or ended early."""
+    if ended.stopped is not None:
+        return f"The game stopped after {ended.steps} steps. {ended.stopped}"
+    early = early_words(ended)
+    return f"The game is over after {ended.steps} steps." + (f" {early}" if early else "")
+
+
+def early_words(ended: GameEnded) -> str:
+    """Tell what was still to come when a game ended; "" if nothing was."""
+    left, told = ended.rounds_left, []
+    if ended.due:
+        told.append(f"It {ENDED_EARLY.format(due=ended.due)}.")
+    if left:
+        told.append(f"{counted(left, 'round')} {'was' if left == 1 else 'were'} left.")
+    return " ".join(told)
 
 
 def paused_lines(count: int, seconds: float) -> list[str]:
@@ -204,9 +216,11 @@ def earlier_steps_words(steps: int) -> str:
     return f"{counted(steps, 'step')} before the interruption: see `tangy log show last`."
 
 
-def over_words(steps: int) -> str:
+def over_words(ended: GameEnded) -> str:
     """Tell that a game is over, and which key starts another."""
-    return f"The game is over after {counted(steps, 'step')}. {{next}} plays another."
+    early = early_words(ended).replace("{", "{{").replace("}", "}}")
+    told = f"The game is over after {counted(ended.steps, 'step')}. {early}".rstrip()
+    return f"{told} {{next}} plays another."
 
 
 def broken_off_words(steps: int, reason: str) -> str:

@@ -215,10 +215,13 @@ def _games_lines(games: Sequence[Game], activity: Activity | None) -> Iterator[s
 def _sums(games: Sequence[Game]) -> str:
     stopped = sum(game.stopped is not None for game in games)
     endless = sum(game.ended is None for game in games)
+    early = sum(bool(game.due) for game in games)
     parts = [
         counted(sum(game.steps for game in games), "step"),
-        f"{len(games) - stopped - endless} {TO_ITS_END}",
+        f"{len(games) - stopped - endless - early} {TO_ITS_END}",
     ]
+    if early:
+        parts.append(f"{early} ended early")
     if stopped:
         parts.append(f"{stopped} stopped before it")
     if endless:

@@ -83,8 +83,8 @@ def _sentence(words: str) -> str:
 
 
 def ended_early(activity: Activity, lacks: str) -> str:
-    """Tell that a game ended before the behaviour that ends it."""
-    return f"The game ended early: nobody got to “{activity.behaviour(lacks).question}”."
+    """Tell that a game ended while a behaviour was still to come."""
+    return f"The game ended early: “{activity.behaviour(lacks).question}” was still to come."
 
 
 def answer_words(remark: Remark, activity: Activity) -> tuple[str, ...]:

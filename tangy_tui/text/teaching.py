@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.reading import nearest
-from tangy_tui.learning.quality import missed_end
+from tangy_tui.learning.early_ends import missed_end
 from tangy_tui.learning.teaching_events import (
     Announced,
     Begun,
@@ -164,8 +164,7 @@ def complete_words(teaching: TeachingSession) -> str:
     """Tell that a demonstration is complete, or that its teacher ended it early."""
     shown, activity = teaching.demonstration, teaching.activity
     steps = counted(len(shown.steps), "step")
-    ending = "" if teaching.world.over else missed_end(activity, shown)
-    if ending:
+    if ending := missed_end(activity, shown):
         return f"{ended_early(activity, ending)} Tangy learns from its {steps}."
     return f"The game is complete: {steps}."
 

@@ -134,8 +134,9 @@ class GamePicture:
                     for line in lines:
                         log.write(line.strip())
                     self.show_scene(0, drive=False, pace=pace)
-                case GameEnded(_, steps, None):
-                    log.write(with_keys(over_words(steps), keymap_of(self._screen.app)), "good")
+                case GameEnded(stopped=None):
+                    words = over_words(event)
+                    log.write(with_keys(words, keymap_of(self._screen.app)), "good")
                 case GameEnded(_, steps, str(reason)):
                     log.write(broken_off_words(steps, reason), "bad")
 

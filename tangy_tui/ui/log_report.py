@@ -54,7 +54,7 @@ def print_games(games: Sequence[Game]) -> None:
         )
     console.print(table)
     for game in games:
-        if game.ended is None or game.stopped is not None:
+        if game.ended is None or game.stopped is not None or game.due:
             console.print(Text(plain(f"Game {game.number}: {game.ending}")))
     console.print(Text(HOW_TO_GO_ON))
 
@@ -62,7 +62,9 @@ def print_games(games: Sequence[Game]) -> None:
 def _ended(game: Game) -> Text:
     if game.ended is None:
         return Text("no end", style="yellow")
-    return Text("played") if game.stopped is None else Text("stopped", style="yellow")
+    if game.stopped is not None:
+        return Text("stopped", style="yellow")
+    return Text("ended early", style="yellow") if game.due else Text("played")
 
 
 def _faults(game: Game) -> Text:

@@ -24,6 +24,7 @@ from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.monitoring.games import ENDED_EARLY
 from tangy_tui.text.activities import whom_words
 from tangy_tui.text.activity_search import proof_words
 from tangy_tui.text.demonstrations import NONE_YET
@@ -167,6 +168,8 @@ def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Belief
     console.print(_people_table(workspace, beliefs))
     for reason, times in sorted(Counter(reason for _, reason in tally.stopped).items()):
         console.print(Text(f"{counted(times, 'game')} stopped: {reason}"))
+    for due, times in sorted(Counter(due for _, due, _ in tally.early).items()):
+        console.print(Text(f"{counted(times, 'game')} {ENDED_EARLY.format(due=due)}"))
 
 
 def _people_table(workspace: Workspace, beliefs: Mapping[str, Beliefs]) -> Table:

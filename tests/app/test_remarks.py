@@ -12,6 +12,7 @@ import pytest
 from tangy_profiles.activity import shipped_activities
 from tangy_profiles.teaching_records import DemonstrationsEdited, Settlement
 from tangy_tui.app.command_grammar import read_settling
+from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.learning.library import read_library
@@ -33,6 +34,10 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.text.games import ended_words
+from tangy_tui.text.teaching import complete_words
+from tests.support.games import ended, play
 
 DECLARED = sorted(set(shipped_activities()) - {"bingo"})
 
@@ -163,6 +168,44 @@ def test_an_early_end_is_reported_before_a_contradiction(workspace: Workspace) -
     assert teaching.world.observe().situation == situation
     (remark,) = do(teaching, "say goodbye")
     assert isinstance(remark, EndedEarly)
+
+
+def test_an_early_goodbye_is_told_in_teaching_and_in_the_games_that_follow(
+    silent: Workspace,
+) -> None:
+    teaching = session(silent)
+    do(teaching, "welcome everyone")
+    (remark,) = do(teaching, "close quiz")
+    assert isinstance(remark, EndedEarly)
+    assert remark.lacks == "ask question"
+    told = complete_words(teaching)
+    assert "ended early" in told and "“ask question”" in told
+    policy = learn(silent)
+    over = ended(play(silent.supervision(policy, 3)))
+    assert (over.due, over.rounds_left) == ("ask question", 6)
+    assert ended_words(over).endswith("“ask question” was still to come. 6 rounds were left.")
+    (game,) = read_games(silent.store)
+    assert game.ending == "ended early: “ask question” was still to come"
+    assert not game.smooth
+
+
+def test_a_goodbye_that_is_due_is_not_early(silent: Workspace) -> None:
+    teaching = session(silent)
+    script = ScriptedTeacher(teaching)
+    while not teaching.world.over:
+        command = script.command()
+        assert isinstance(command, Say)
+        assert not [one for one in do(teaching, command.text) if isinstance(one, EndedEarly)]
+    assert "The game is complete" in complete_words(teaching)
+
+
+def test_a_guided_game_reports_an_early_goodbye_though_it_goes_on(silent: Workspace) -> None:
+    teaching = silent.teaching("Ada", 1, guided=True)
+    teaching.begin(resume=False)
+    (remark,) = do(teaching, "welcome everyone", "ask question", "close quiz")
+    assert isinstance(remark, EndedEarly)
+    assert remark.lacks == "allow time"
+    assert not teaching.world.over, "it goes on from an earlier moment"
 
 
 def test_a_step_that_changes_nothing_is_reported_once(workspace: Workspace) -> None:

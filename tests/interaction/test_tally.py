@@ -79,3 +79,10 @@ def test_an_empty_tally_has_zeros(activity: Activity) -> None:
     document = Tally().to_json(activity.situations, {})
     assert (document["games"], document["rows"], document["faults"]) == (0, [], [])
     assert document["interactions_per_user_game"] == 0
+
+
+def test_games_that_ended_early_are_listed_with_what_was_due(activity: Activity) -> None:
+    counted = Tally()
+    counted.add([GameEnded("g", 5, None), GameEnded("h", 2, None, due="joke", rounds_left=4)])
+    document = counted.to_json(activity.situations, {})
+    assert document["ended_early"] == [{"game": 2, "due": "joke", "rounds_left": 4}]

@@ -229,7 +229,8 @@ class DeclaredLiveWorld(LiveWorld):
         seconds = max(0.0, self.link.time - began)
         unclear, self._not_clear = tuple(self._not_clear), []
         led = self._progress.end(game)
-        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led)
+        left = game.rounds_left if self.over else 0
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led, left)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
         """Speak, show, gesture and drive; return speech and picture text.

@@ -99,6 +99,11 @@ class DeclaredGame:
         """The row of the current item, -1 before the first."""
         return self.order[self.round - 1] if 0 < self.round <= len(self.order) else -1
 
+    @property
+    def rounds_left(self) -> int:
+        """How many items have not been presented."""
+        return len(self.order) - self.round
+
     def number(self, fact: Fact, player: str | None) -> float:
         """Return a count, or for how many s a timer has been running."""
         if fact.per_player and player is None:

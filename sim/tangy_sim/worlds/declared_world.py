@@ -155,7 +155,8 @@ class DeclaredWorld:
                 self._ask_silent(behaviour, whom)
         seconds += pause + ASKING_AGAIN * sum(one.asked_again for one in self._not_clear)
         unclear, led = tuple(self._not_clear), self._progress.end(self.game)
-        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led)
+        left = self.game.rounds_left if self.over else 0
+        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led, left)
 
     def words_of(self, act: Act) -> str:
         """Describe what a person did, in the words of the file."""
