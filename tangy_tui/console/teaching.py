@@ -52,11 +52,13 @@ from tangy_tui.text.coach import SAYABLE, sayable_now
 from tangy_tui.text.hearing import hearing_words
 from tangy_tui.text.questions import ANSWER_HELP, NO_QUESTION, answer_help
 from tangy_tui.text.refusals import WHICH
-from tangy_tui.text.remarks import which_answer
-from tangy_tui.text.teaching import teaching_lines
+from tangy_tui.text.remarks import left_open_lines, which_answer
+from tangy_tui.text.teaching import left_words, teaching_lines
 from tangy_tui.text.teaching_commands import (
     GAME_OVER,
+    GUIDED_ALREADY,
     HELP,
+    NOT_GUIDED,
     NOTHING_CHANGED,
     ON_THE_SCREEN,
     STOPPED,
@@ -148,8 +150,10 @@ class TeachingLines:
 
     async def _teach(self, *, resume: bool) -> None:
         teaching, write = self._teaching, self._write
-        write(f"Teaching {teaching.activity.title}. {HELP}")
-        self._tell(teaching.begin(resume=resume))
+        begun = teaching.begin(resume=resume)
+        guided = "" if teaching.demonstration.guided else f" {NOT_GUIDED}"
+        write(f"Teaching {teaching.activity.title}. {HELP}{guided}")
+        self._tell(begun)
         self._write(self._inquiries.where())
         self._tell_of_tour()
         while (line := await self._next_line()) is not None:
@@ -326,11 +330,29 @@ class TeachingLines:
         return renamed_teacher(teaching.teacher, teaching.demonstration.teacher)
 
     def _perform(self, word: Perform) -> None:
-        """Learn, or leave for a game; other actions need a screen."""
+        """Learn, begin a guided game, or leave for a game; other actions need a screen."""
+        if word == Perform("guided"):
+            self._guide()
+            return
+        if word == Perform("learn"):
+            self._write_all(left_open_lines(self._teaching))
         lines, self.plays = (
             ([ON_THE_SCREEN], False) if self._after is None else (self._after.perform(word))
         )
         self._write_all(lines)
+
+    def _guide(self) -> None:
+        """Begin or resume a guided game; the steps of the present game are kept."""
+        teaching = self._teaching
+        shown = teaching.demonstration
+        if shown.guided and not shown.finished:
+            self._write(GUIDED_ALREADY)
+            return
+        if shown.steps and not shown.finished:
+            self._write(left_words(len(shown.steps)))
+        teaching.guided = True
+        self._tell(teaching.begin())
+        self._write(self._inquiries.where())
 
     def _write_all(self, lines: Iterable[str]) -> None:
         for line in lines:

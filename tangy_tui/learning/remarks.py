@@ -63,6 +63,7 @@ class Remarks:
         self._contradictions: Contradictions | None = None
         self._told: set[tuple[Kind, Situation]] = set()
         self._settled: dict[int, int] = {}  # step id -> the edit that its answer made
+        self._deferred: list[tuple[str, Remark]] = []  # demonstration, remark
 
     @property
     def _shown(self) -> Contradictions:
@@ -113,15 +114,46 @@ class Remarks:
         if self.open is None and words:
             self.open = NewWording(shown.number, shown.step, words)
 
-    def answer(self, answer: RemarkAnswer) -> Settled | None:
-        """Log a teacher's answer to the open remark, or postpone its conflict.
+    def redone(self) -> Remark | None:
+        """Close the remark on a step that was redone, and return it only if it ends a game.
+
+        Others were made when the step was first shown.
+        """
+        if not isinstance(self.open, EndedEarly):
+            self.open = None
+        return self.open
+
+    def put_off(self, demonstration: str) -> None:
+        """Close the open remark without an answer.
+
+        Learning asks about conflicts; other remarks are kept for `deferred`.
+        """
+        remark, self.open = self.open, None
+        if remark is not None and not isinstance(remark, Contradicted | NewWording):
+            self._deferred.append((demonstration, remark))
+
+    def deferred(self) -> list[tuple[str, Remark]]:
+        """Return remarks without an answer, each with its demonstration, and each only once.
+
+        Remarks on games that are not finished come later.
+        """
+        finished = {d.id for d in read_library(self._store, self._activity.name).finished}
+        due = [one for one in self._deferred if one[0] in finished]
+        self._deferred = [one for one in self._deferred if one not in due]
+        return due
+
+    def answer(self, answer: RemarkAnswer, demonstration: str) -> Settled | None:
+        """Log a teacher's answer to the open remark of a demonstration, or postpone it.
 
         Returns:
             What was settled; None if there is no open remark.
         """
-        remark, self.open = self.open, None
+        remark = self.open
         if remark is None:
             return None
+        if answer == "later":
+            self.put_off(demonstration)
+        self.open = None
         if isinstance(remark, NewWording):
             self.phrases.note(remark.words, remark.step.behaviour, kept=answer == "keep")
             return Settled(remark, answer, ())
@@ -143,6 +175,7 @@ class Remarks:
     def take_back(self, demonstration: str, number: int, step: Step) -> None:
         """Forget an undone step and undo its answer; a remark about it may be made again."""
         self.open = None
+        self._deferred = [one for one in self._deferred if one[1].step.id != step.id]
         self._told = {(kind, of) for kind, of in self._told if of != step.state.situation}
         if self._contradictions is not None:
             self._contradictions.take_back(demonstration, number)

@@ -43,7 +43,6 @@ from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
     Discard,
-    EndedEarly,
     Executed,
     Finish,
     Finished,
@@ -151,6 +150,11 @@ class TeachingSession:
         """The remark about the last step, while it can be answered."""
         return self._remarks.open
 
+    def deferred(self) -> list[tuple[str, Remark]]:
+        """Put the open remark off, and return the ones left open (see `Remarks.deferred`)."""
+        self._remarks.put_off(self.demonstration.id)
+        return self._remarks.deferred()
+
     def name(self, person: str) -> str:
         """Return a person's name, or the id if the name is unknown."""
         return self._names.get(person, person)
@@ -193,7 +197,7 @@ class TeachingSession:
     def _heed(self, command: TeacherCommand) -> list[TeachingEvent]:
         match command:
             case Say():
-                self._remarks.open = None  # postponed
+                self._remarks.put_off(self.demonstration.id)
                 return self._say(command)
             case Settle(answer):
                 return self._settle(answer)
@@ -206,7 +210,7 @@ class TeachingSession:
             case Redo():
                 return self._redo()
             case Next():
-                self._remarks.open = None  # postponed
+                self._remarks.put_off(self.demonstration.id)
                 if self.demonstration.finished:
                     return self._begin_new()
                 return [Refused("not finished")]
@@ -337,7 +341,7 @@ class TeachingSession:
     def _settle(self, answer: RemarkAnswer) -> list[TeachingEvent]:
         if answer == "undo" and self.remark is not None:
             return self._undo()
-        settled = self._remarks.answer(answer)
+        settled = self._remarks.answer(answer, self.demonstration.id)
         if settled is not None and settled.answer == "keep":
             self._enter(self.demonstration, ReplayedGame(self.world, self.numbers))
         return [Refused("nothing to settle")] if settled is None else [settled]
@@ -386,9 +390,7 @@ class TeachingSession:
         except NotAsBefore:
             return [Refused("redo came out otherwise")]
         self._undone.pop()
-        remark, self._remarks.open = self.remark, None  # it was made when the step was first shown
-        if isinstance(remark, EndedEarly):  # but each ending is told of
-            self._remarks.open = remark
+        if (remark := self._remarks.redone()) is not None:
             events.insert(1, remark)
         return events
 

@@ -22,17 +22,21 @@ from tangy_tui.text.numbers import listed
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
+    from tangy_tui.learning.teaching_session import TeachingSession
 
 Name = Callable[[str], str]
 
 CHANGED_NOTHING = "That changed nothing, so Tangy would do it again and again."
 LED_BACK = "That led back to an earlier moment, so Tangy would go in circles."
 
-ANSWER_BY_LINE = "Type a number, or just go on: you can decide later."
+ANSWER_BY_LINE = "Type a number, or just go on: Tangy asks you once more before it learns."
+OR_GO_ON = "Type a number, or just go on: Tangy reminds you once before it learns."
 OR_NO = "Type 1 or no, or just go on."
 WHICH_ANSWER = "Yes could mean several answers here. Type a number, or no to decide later:"
 NUMBER_OR_ESC = "Press the number of an answer, or Esc."
 SAY_A_NUMBER = "Please say the number of an answer, or no."
+AS_SHOWN = "Tangy takes it as you showed it."
+LEFT_OPEN = "You left open what Tangy asked here. It learns it as you showed it:"
 LATER = "decide later"
 LEARN_LATER = "Decide later, and let Tangy learn"
 GO_ON = "go on"
@@ -129,8 +133,36 @@ def remark_lines(remark: Remark, activity: Activity, name: Name, game: str = "")
     return [
         f"   ! {remark_words(remark, activity, name, game)}",
         *(f"     {number}  {words}" for number, words in numbered),
-        f"   {OR_NO if isinstance(remark, NewWording) else ANSWER_BY_LINE}",
+        f"   {_by_line(remark)}",
     ]
+
+
+def _by_line(remark: Remark) -> str:
+    """Tell how to answer a remark in a line, and what happens without an answer."""
+    match remark:
+        case NewWording():
+            return OR_NO
+        case Contradicted():
+            return ANSWER_BY_LINE
+        case _:
+            return OR_GO_ON
+
+
+def left_open_lines(teaching: TeachingSession) -> list[str]:
+    """Repeat the remarks without an answer, once, before Tangy learns."""
+    present, lines = teaching.demonstration.id, list[str]()
+    for game, remark in teaching.deferred():
+        said = remark_words(remark, teaching.activity, teaching.name, game)
+        if game == present:
+            lines.append(f"Step {remark.number}: {said} {again_words(remark.number)}")
+        else:
+            lines.append(f"Step {remark.number} of an earlier game: {said}")
+    return [LEFT_OPEN, *lines] if lines else []
+
+
+def again_words(step: int) -> str:
+    """Tell how to show a step anew in lines."""
+    return f"To show it again, type again {step}."
 
 
 def which_answer(remark: Remark, activity: Activity) -> list[str]:
@@ -145,6 +177,8 @@ def settled_words(settled: Settled, activity: Activity) -> str:
         words, done = settled.remark.words, settled.remark.step.behaviour
         kept = f"From now on “{words}” means: {activity.behaviour(done).question}."
         return kept if settled.answer == "keep" else f"Tangy does not keep “{words}”."
+    if not settled.right and not isinstance(settled.remark, Contradicted):
+        return AS_SHOWN
     if not settled.right:
         return "Left open. Tangy asks again which is right before it learns."
     right = listed((activity.behaviour(b).question for b in settled.right), "and")

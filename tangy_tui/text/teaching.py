@@ -59,7 +59,7 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
             if resumed:
                 return [
                     f"Going on with {teaching.teacher}'s demonstration of "
-                    f"{len(demonstration.steps)} steps (game {demonstration.seed})."
+                    f"{counted(len(demonstration.steps), 'step')} (game {demonstration.seed})."
                 ]
             begun = f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."
             return [begun, GUIDED] if demonstration.guided else [begun]

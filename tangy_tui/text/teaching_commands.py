@@ -11,6 +11,11 @@ HELP = (
     "Type what Tangy should do (the first letters are enough), or one of: undo, redo, again N, "
     "where, seen, why, help, next, learn, play, quit. Enter alone lists what can be said now."
 )
+NOT_GUIDED = (
+    "This game is not guided: type guided for one in which everything comes up that Tangy has to "
+    "learn."
+)
+GUIDED_ALREADY = "This game is guided: everything that Tangy has to learn comes up in it."
 NOTHING_FITS = "No command fits. Empty the line and press Tab to see what you can say."
 MEANINGS = (
     ("undo", "take the last step back"),
@@ -20,6 +25,7 @@ MEANINGS = (
     ("seen", "say which situations nobody has shown yet"),
     ("why", "say what Tangy would do here by what it has learnt, and why"),
     ("next", "begin another game"),
+    ("guided", "begin a game in which everything comes up that Tangy has to learn"),
     ("learn", "let Tangy learn from the games that were shown to their end"),
     ("play", "leave, and see Tangy run a game in the simulated room"),
     ("discard game", "put this game away, and begin another"),

@@ -14,6 +14,7 @@ from tangy_profiles.teaching_records import DemonstrationsEdited, Settlement
 from tangy_tui.app.command_grammar import read_settling
 from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.remarks import answers_to
@@ -21,6 +22,7 @@ from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import (
     Contradicted,
     EndedEarly,
+    Finish,
     NothingChanged,
     Overlooked,
     Redo,
@@ -444,3 +446,32 @@ async def test_a_remark_is_answered_by_lines(workspace: Workspace) -> None:
     (conflict,) = read_library(workspace.store, "bingo").resolutions
     assert conflict.right == ("call number",)
     assert not teaching.remark, "it is asked once"
+
+
+async def test_a_remark_left_open_by_lines_comes_back_once_before_learning(
+    workspace: Workspace,
+) -> None:
+    before = session(workspace, "Bea")
+    until(before, "navigate")
+    wrong = unasked(before)
+    ends = ["finish the demonstration", "y", "learn", "learn"]
+    lines = iter([wrong, "y", "go to front", "y", *ends])
+    said: list[str] = []
+    teaching = workspace.teaching("Bea", 1)
+    after = AfterTeaching(learn=lambda: ["Learnt."], check=lambda: None)
+    await TeachingLines(teaching, lambda: next(lines, None), said.append, after=after).run()
+    number = len(before.demonstration.steps) + 1
+    (told,) = [line for line in said if line.startswith(f"Step {number}: ")]
+    assert "did not ask for help" in told
+    assert f"again {number}" in told
+    assert said.index(told) < said.index("Learnt.")
+
+
+async def test_a_remark_on_a_step_that_was_undone_does_not_come_back(workspace: Workspace) -> None:
+    teaching = session(workspace)
+    until(teaching, "navigate")
+    do(teaching, unasked(teaching))
+    teaching.apply(Settle("later"))
+    teaching.apply(Undo())
+    teaching.apply(Finish())
+    assert teaching.deferred() == []

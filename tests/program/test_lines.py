@@ -22,14 +22,15 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.interaction.game_events import BeliefUpdated
+from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
-from tangy_tui.text.coach import SAYABLE
+from tangy_tui.text.coach import GUIDED, SAYABLE
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.questions import NO_QUESTION
 from tangy_tui.text.remarks import WHICH_ANSWER
-from tangy_tui.text.teaching_commands import command_line
+from tangy_tui.text.teaching_commands import GUIDED_ALREADY, command_line
 from tests.support.staff_lines import play_by_turns
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
@@ -56,10 +57,22 @@ def test_a_session_begins_with_instructions_and_the_state(
     workspace: Workspace,
 ) -> None:
     said = told(workspace)
-    assert said[0].startswith("Teaching Bingo. Type what Tangy should do, ")
+    assert said[0].startswith("Teaching Bingo. Type what Tangy should do (the first letters are ")
     assert said[1] == "A new demonstration by Ada (game 1)."
+    assert "This game is not guided: type guided for one" in said[0]
     assert said[2] == ("Now: Nobody has been welcomed yet: time to greet everyone.")
     assert len(said) == 3, "looking in leaves nothing to go on from"
+
+
+def test_a_guided_game_begins_by_a_word_and_keeps_the_other_one(workspace: Workspace) -> None:
+    said = told(workspace, "greet everyone", "y", "guided", "guided", "greet everyone", "y")
+    assert "Tangy keeps 1 step of this game. Teach goes on from there." in said
+    assert GUIDED in said
+    assert said.count(GUIDED) == 1
+    assert GUIDED_ALREADY in said
+    guided, plain_one = read_library(workspace.store, "bingo").demonstrations[::-1]
+    assert (guided.guided, len(guided.steps)) == (True, 1)
+    assert (plain_one.guided, len(plain_one.steps)) == (False, 1)
 
 
 def test_the_question_names_the_behaviour_and_only_y_executes_it(workspace: Workspace) -> None:
