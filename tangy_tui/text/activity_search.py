@@ -52,6 +52,11 @@ def finding_words(source: str, found: ActivityFlaw) -> str:
             words = f"behaviours.{found.name}: it can never be chosen; check 'needs' and 'to'"
         case "text lacks a word":
             words = f"behaviours.{found.name}: {found.text!r} lacks a word when it is said"
+        case "repeated in vain":
+            words = (
+                f"behaviours.{found.name}: it changes nothing here, so Tangy would repeat it until "
+                f"people do something: {found.text}; expect something else after a timer"
+            )
         case "never ends":
             words = f"stages: from here no game can end: {found.name}"
         case "nothing possible":

@@ -10,7 +10,7 @@ from tangy_profiles.activity import shipped_activities
 from tangy_profiles.declared.checking import findings
 from tangy_profiles.declared.search import Limit
 from tangy_profiles.declared.state_keys import TELLING
-from tangy_tui.text.activity_search import dead_end_lines, search_lines
+from tangy_tui.text.activity_search import dead_end_lines, finding_words, search_lines
 from tests.support.changed import changed_trivia
 from tests.support.declared import DECLARED, declared
 
@@ -62,6 +62,16 @@ def test_a_game_that_never_ends_as_expected_is_a_flaw(tmp_path: Path) -> None:
     lines = way_there(tmp_path, round_and_round)
     assert "     then player 1: answer is right" in lines
     assert lines[-1] == "  over · told is no -> allow time"
+
+
+@pytest.mark.slow
+def test_a_behaviour_that_is_repeated_while_nobody_acts_is_a_flaw(tmp_path: Path) -> None:
+    patient = ('["listen", "clock is <20", "allow time"],', '["listen", "allow time"],')
+    activity = changed_trivia(tmp_path, patient)
+    (found,) = (one for one in findings(activity).flaws if one.flaw == "repeated in vain")
+    assert found.name == "allow time"
+    assert "clock is >=20" in found.text
+    assert "allow time" in finding_words("mine.toml", found)
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from typing import Literal
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.demonstrated_moves import UNDECIDED, DemonstratedMoves, Move
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.progress import progress
 from tangy_profiles.declared.search import Cut, Limit, SearchResult, explore
 from tangy_profiles.declared.search_way import Counterexample
 from tangy_profiles.declared.speech import empty_slots
@@ -27,6 +28,7 @@ Flaw = Literal[
     "text lacks a word",
     "never ends",
     "nothing possible",
+    "repeated in vain",
 ]
 PLAYERS = ("one", "other")
 LIMIT = Limit(states=12_000, seconds=10.0)
@@ -90,6 +92,7 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
     """
     until = thread_time() + limit.seconds
     slots: dict[tuple[str, str], bool] = {}
+    in_vain: list[ActivityFlaw] = []
     players = (activity.teams or PLAYERS)[:2]
     sizes = [players] if activity.teams else [players[:1], players]
     found: list[tuple[SearchedGames, SearchResult]] = []
@@ -104,10 +107,11 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
     tried = [one for _, one in found]
     if activity.expected:
         left = Limit(limit.states, until - thread_time())
-        slots, one = _played_as_expected(activity, players, left)
+        slots, in_vain, one = _played_as_expected(activity, players, left)
         note(players, one, as_expected=True)
     flaws = list(islice(_dead_ends(activity, found), 1))
     flaws += islice(_idle(activity, found), 1)
+    flaws += () if flaws else in_vain  # a dead end explains it
     missing = tuple(_missing(activity, tried))
     whole = all(one.whole for one in tried)
     played = {name for one in tried for name in one.played}
@@ -192,9 +196,14 @@ def _tried(
 
 def _played_as_expected(
     activity: DeclaredActivity, players: Sequence[str], limit: Limit
-) -> tuple[dict[tuple[str, str], bool], SearchResult]:
-    """Search games with the expected behaviours; also return texts with slots that can be empty."""
+) -> tuple[dict[tuple[str, str], bool], list[ActivityFlaw], SearchResult]:
+    """Search games with the expected behaviours.
+
+    Also return the texts with slots that can be empty, and a flaw for each behaviour that changes
+    nothing, not even by the time that it takes: until people act, it is repeated.
+    """
     slots: dict[tuple[str, str], bool] = {}
+    in_vain: dict[str, ActivityFlaw] = {}
     declaration = activity.declaration
     shown = expected_moves(activity)
 
@@ -202,12 +211,20 @@ def _played_as_expected(
         move = shown.move(game)
         if move is None or move[0] == UNDECIDED:
             return []
-        _note_slots(game, *move, slots, any_time=True)
+        name, whom = move
+        _note_slots(game, name, whom, slots, any_time=True)
+        if name not in in_vain and not declaration.behaviours[name].invites:
+            after = game.copy()
+            after.execute(name, whom)
+            if not after.differs(game) and progress(game, after) == "none":
+                situation = activity.in_names(shown.situation(game))
+                in_vain[name] = ActivityFlaw("repeated in vain", name, situation)
         return [move]
 
     rounds = min(2, declaration.items.rounds) or 1
     game = DeclaredGame(declaration, players, range(rounds))
-    return slots, explore(game, moves, shown.situation, limit)
+    searched = explore(game, moves, shown.situation, limit)
+    return slots, list(in_vain.values()), searched
 
 
 def expected_moves(activity: DeclaredActivity) -> DemonstratedMoves:
