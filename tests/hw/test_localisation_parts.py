@@ -106,6 +106,18 @@ class TestField:
         alone = [field.beams(one[None], points).mean() for one in poses]
         assert field.scores(poses, points) == pytest.approx(np.array(alone), abs=1e-5)
 
+    @pytest.mark.parametrize("part", [1.0, 0.4])
+    def test_a_map_tells_of_a_pose_if_it_explains_or_contradicts_enough_beams(
+        self, part: float
+    ) -> None:
+        field, points = LikelihoodField(MAP), thin(look(SIDES, START), 20.0) * part
+        poses = [Pose(*one) for one in around(START, (2, 2, 2), 40, np.random.default_rng(0))]
+        shares = [field.evidence(pose, points).share for pose in poses]
+        for least in (0.1, 0.2, 0.5):
+            told = [field.tells(pose, points, least) for pose in poses]
+            assert told == [share >= least for share in shares]
+        assert min(shares) < 0.5 < max(shares)
+
     def test_only_beams_through_walls_lower_the_score(self) -> None:
         field, true = LikelihoodField(MAP), Pose(4.0, 2.0, 0.7)
         points = thin(look(SIDES, true), 20.0)

@@ -87,11 +87,19 @@ class LikelihoodField:
         scale = 1.0 / self.map.resolution
         # in cells, single precision: .1 mm on a map of 100 m
         c, s = np.cos(poses[:, 2]) * scale, np.sin(poses[:, 2]) * scale
-        x, y = self._cells(poses)
+        x, y = self._cells(poses[:, 0], poses[:, 1])
         ends = np.vstack((points.T, np.ones(len(points)))).astype(np.float32)
         column = np.column_stack((c, -s, x)).astype(np.float32) @ ends
         row = np.column_stack((s, c, y)).astype(np.float32) @ ends
-        return np.asarray(self._flat.take(self._index(column, row), mode="clip"))
+        return np.asarray(self._flat.take(self._index(column, row), mode="wrap"))
+
+    def tells(self, pose: Pose, points: Floats, share: float) -> bool:
+        """Return whether the map explains or contradicts at least this share of the beams.
+
+        Faster than `evidence`, because it seldom has to follow the beams.
+        """
+        explained = self.beams(np.asarray([pose]), points)[0] > 2 * FLOOR
+        return explained.mean() >= share or self.evidence(pose, points).share >= share
 
     def evidence(self, pose: Pose, points: Floats) -> ScanLikelihood:
         """Return how well beams with ends `points` (n, 2), in the robot's frame, support a pose."""
@@ -113,21 +121,21 @@ class LikelihoodField:
         far = lengths(points)
         steps = np.arange(0.0, far.max(initial=0.0) - SHORT, self.map.resolution)[:, None]
         along = (transform_points(points, pose) - (pose.x, pose.y)) / np.maximum(far, 1e-9)[:, None]
-        at = np.stack((pose.x + steps * along[:, 0], pose.y + steps * along[:, 1]), axis=-1)
-        walls = self._walls.take(self._index(*self._cells(at)), mode="clip")
+        cells = self._cells(pose.x + steps * along[:, 0], pose.y + steps * along[:, 1])
+        walls = self._walls.take(self._index(*cells), mode="wrap")
         return np.asarray((walls & (steps < far - SHORT)).any(axis=0))
 
     def on_floor(self, poses: Floats) -> NDArray[np.bool_]:
         """Return whether each of the poses (m, 3) lies on free floor."""
-        return np.asarray(self._free.take(self._index(*self._cells(poses))))
+        return np.asarray(self._free.take(self._index(*self._cells(poses[:, 0], poses[:, 1]))))
 
-    def _cells(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return the columns and rows, with fractions, of points (..., 2 or more)."""
-        x, y = self.map.origin
+    def _cells(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Return the columns and rows, with fractions, of points."""
+        left, near = self.map.origin
         scale = 1.0 / self.map.resolution
-        return (points[..., 0] - x) * scale + 1, (points[..., 1] - y) * scale + 1
+        return (x - left) * scale + 1, (y - near) * scale + 1
 
-    def _index(self, column: NDArray[Any], row: NDArray[Any]) -> NDArray[np.int32]:
+    def _index(self, column: NDArray[Any], row: NDArray[Any]) -> NDArray[np.intp]:
         """Return the index of each cell; the nearest one for those outside. Overwrites both."""
         rows, columns = self._field.shape
         for values, most in ((column, columns - 1), (row, rows - 1)):
@@ -136,7 +144,7 @@ class LikelihoodField:
         index = row.astype(np.int32)
         index *= np.int32(columns)
         index += column.astype(np.int32)
-        return index
+        return index.astype(np.intp)  # `take` converts others, and more slowly
 
 
 def _walls(map_: OccupancyMap) -> NDArray[np.bool_]:

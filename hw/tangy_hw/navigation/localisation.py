@@ -15,7 +15,7 @@ import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.device_protocols import Pose, Scan
-from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
+from tangy_hw.navigation.likelihood import BEAMS, NEAREST, LikelihoodField, covered, evenly
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.particles import (
     FEWEST,
@@ -28,7 +28,14 @@ from tangy_hw.navigation.particles import (
     resample,
 )
 from tangy_hw.navigation.pose_search import Search
-from tangy_hw.navigation.poses import IDENTITY, Floats, compose, relative_pose, wrap
+from tangy_hw.navigation.poses import (
+    IDENTITY,
+    Floats,
+    compose,
+    endpoints,
+    relative_pose,
+    wrap,
+)
 from tangy_hw.navigation.recent_scans import RecentScans
 
 LOST = 0.85  # of the usual fit: below this the estimated pose is probably wrong
@@ -135,16 +142,16 @@ class Localisation:
             odometry: pose by wheel odometry, in any fixed frame.
             scan: the scan.
         """
-        points = thin(scan, FARTHEST, self._laser)
+        ends = endpoints(scan, FARTHEST, self._laser, NEAREST)
+        points = evenly(ends, BEAMS)
         first = self._odometry is None
         step = IDENTITY if self._odometry is None else relative_pose(self._odometry, odometry)
         if first:
             self._odometry = odometry
         moved = hypot(step.x, step.y) > MOVED or abs(step.heading) > TURNED
         here = compose(self._anchor, step)
-        evidence = self._field.evidence(here, points)
         seen = len(points) >= FEWEST_BEAMS and not covered(scan)
-        if not seen or (evidence.share < SEEN and not self._global):
+        if not seen or not (self._global or self._field.tells(here, points, SEEN)):
             if moved:  # move by odometry alone
                 self._odometry = odometry
                 self._particles = move(self._particles, step, self._rng, BLIND)
@@ -152,11 +159,11 @@ class Localisation:
                 here = self._anchor
             return self._told(here)
         if not (moved or first or self._fast < LOST * self._slow):
-            self._fast += FAST * (evidence.score - self._fast)
+            self._fast += FAST * (self._field.evidence(here, points).score - self._fast)
             return self._told(here)
         self._odometry = odometry
         self._particles = move(self._particles, step, self._rng)
-        every = thin(scan, FARTHEST, self._laser, EVERY) if not self._settled else points
+        every = points if self._settled else evenly(ends, EVERY)
         self._weigh(every)
         if not first and hypot(self._anchor.x - here.x, self._anchor.y - here.y) > JUMP:
             self._fast = min(self._fast, PROOF * self._slow)  # one of the two poses is wrong
