@@ -4,7 +4,8 @@ Run by hand: `python -m tests.bench.lost_robots [--tries N] [--seed N]`. A robot
 the simulated room, without a pose, and drives from point to point with a scan each `--seconds`.
 With `TANGY_LASER_LOG` it also starts anywhere in the log of `tests.bench.localisation`, with scans
 `--metres` apart. It is followed until `LOOKS` scans after it first counted as found, or until it
-has gone `FAR`. It is wrong where it counts as found and is off by more than `OFF`.
+has gone `FAR`. With `--still` it only moves to and fro, by some 10 cm. It is wrong where it counts
+as found and is off by more than `OFF`.
 """
 
 from __future__ import annotations
@@ -12,15 +13,16 @@ from __future__ import annotations
 import argparse
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import hypot, pi
 
 import numpy as np
 
-from tangy_hw.device_protocols import Pose
+from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.navigation.localisation import Localisation
 from tangy_hw.navigation.occupancy import OccupancyMap, map_of_room
+from tangy_hw.navigation.poses import relative_pose
 from tangy_profiles.room import load_room
 from tests.bench.localisation import FOLDER, Moment, apart, building, logged, moments
 from tests.hw.raycast import Wheels, driven, look, room_sides, tour
@@ -29,6 +31,7 @@ ROOM = load_room()
 FAR = 40.0  # m
 OFF = 1.0  # m
 LOOKS = 20  # scans after the first at which it counts as found
+TO_AND_FRO, STILL_LOOKS = 0.12, 80  # m, and scans, of a robot that hardly moves
 
 
 @dataclass
@@ -103,6 +106,45 @@ def drives(rng: np.random.Generator, seconds: float) -> Iterator[Moment]:
         wheels.turn(twist, 0.1)
 
 
+def to_and_fro(rng: np.random.Generator) -> Iterator[Moment]:
+    """Yield what a robot measures that hardly moves in the simulated room."""
+    sides, wheels = room_sides(ROOM), Wheels(rng)
+    true = Pose(*(float(rng.uniform(*ends)) for ends in ((0.8, 9.2), (0.8, 4.2), (-pi, pi))))
+    for number in range(STILL_LOOKS):
+        yield Moment(wheels.pose, look(sides, true, rng), true)
+        twist = Twist(TO_AND_FRO if number % 2 else -TO_AND_FRO, 0.0)
+        true = driven(true, twist, 1.0)
+        wheels.turn(twist, 1.0)
+
+
+def near_each_other(way: Sequence[Moment], first: int) -> list[Moment]:
+    """Return two moments of a way, .1 to .3 m and less than .3 rad apart, in turn; [] if none."""
+    one = way[first]
+    for other in way[first + 1 :]:
+        step = relative_pose(one.truth, other.truth)
+        if hypot(step.x, step.y) > 0.25 or abs(step.heading) > 0.25:
+            break
+        if hypot(step.x, step.y) > 0.11:
+            return [one, other] * (STILL_LOOKS // 2)
+    return []
+
+
+def still(folder: str | None, tries: int, seed: int) -> Outcome:
+    """Let robots that hardly move find their place in the room, or in the building of a log."""
+    found = Outcome()
+    map_ = building(folder) if folder else map_of_room(ROOM)
+    for one in range(tries):
+        rng = np.random.default_rng([seed, one])
+        if folder:
+            log = moments(logged(folder))[1::2]
+            way = near_each_other(log, int(rng.integers(len(log) * 4 // 5)))
+        else:
+            way = list(to_and_fro(rng))
+        if way:
+            found.follow(Localisation(map_, rng), way)
+    return found
+
+
 def in_room(map_: OccupancyMap, seconds: float, tries: int, seed: int) -> Outcome:
     """Let robots find their place in the simulated room."""
     found = Outcome()
@@ -129,7 +171,12 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, nargs="*", default=[0.1, 0.5, 1.0, 2.5])
     parser.add_argument("--metres", type=float, nargs="*", default=[0.1, 0.5, 1.0, 2.0])
+    parser.add_argument("--still", action="store_true")
     options = parser.parse_args()
+    if options.still:
+        for place in (None, os.environ.get(FOLDER)):
+            print(still(place, options.tries, options.seed).row(), flush=True)
+        return
     map_ = map_of_room(ROOM)
     for seconds in options.seconds:
         row = in_room(map_, seconds, options.tries, options.seed).row()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, inf
 from unittest.mock import patch
 
 import numpy as np
@@ -13,6 +13,7 @@ from tangy_hw.navigation.localisation import LOST, Estimate, Localisation
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, near
 from tangy_hw.navigation.poses import wrap
+from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
 from tangy_hw.navigation.recent_scans import Comparison, RecentScans
 from tangy_profiles.room import load_room
 from tests.bench.lost_robots import in_room
@@ -185,6 +186,18 @@ class TestFinding:
             while not compare.called:
                 robot.drive([Twist(0.5, 0.0)])
         assert (near(robot.localisation.particles, there).mean() > 0.3) == moves
+
+    def test_if_the_robot_hardly_moves_the_scans_of_one_place_may_do(self) -> None:
+        robot, asked = Driven(3, start=None), []
+
+        def compare(*_: object, fewest: int) -> Comparison:
+            asked.append(fewest)
+            return Comparison(-inf if fewest > 1 else 1.0)
+
+        with patch.object(RecentScans, "compare", side_effect=compare):
+            found = robot.drive([Twist(1.2, 0.0), Twist(-1.2, 0.0)] * 15)
+        assert asked == [FEWEST_SCANS] * 3 + [1]
+        assert found[-1][1].settled
 
     def test_staff_can_set_the_pose(self) -> None:
         robot = Driven(24, start=Pose(1, 1, 0))

@@ -199,6 +199,9 @@ class TestRecentScans:
             points = thin(look(SIDES, START, rng), 20.0)
             found = recent.compare(START, IDENTITY, points)
         assert found.lead == -inf
+        opposite = compose(self.OPPOSITE, START)
+        recent.note(IDENTITY, points, np.array([opposite]), np.array([0.9]))
+        assert 0.0 < recent.compare(START, IDENTITY, points, fewest=1).lead < inf
 
     def test_forgotten_scans_do_not_count(self) -> None:
         rng = np.random.default_rng(3)

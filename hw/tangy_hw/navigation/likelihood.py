@@ -94,7 +94,7 @@ class LikelihoodField:
         return np.asarray(self._flat.take(self._index(column, row), mode="wrap"))
 
     def tells(self, pose: Pose, points: Floats, share: float) -> bool:
-        """Return whether the map explains or contradicts at least this share of the beams.
+        """Return whether the map explains or contradicts at least this share of beams (n, 2).
 
         Faster than `evidence`, because it seldom has to follow the beams.
         """

@@ -9,7 +9,7 @@ that fit, if they support it more than any other place that a search of the whol
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot, sqrt
+from math import hypot, inf, sqrt
 
 import numpy as np
 from numpy.random import Generator
@@ -36,6 +36,7 @@ from tangy_hw.navigation.poses import (
     relative_pose,
     wrap,
 )
+from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
 from tangy_hw.navigation.recent_scans import RecentScans
 
 LOST = 0.85  # of the usual fit: below this the estimated pose is probably wrong
@@ -55,6 +56,7 @@ GENTLE = 0.15  # factor on SHARPNESS while several places are possible
 EVERY = 120  # beams used while several places are possible: few beams tell them apart
 SETTLING, AGAIN = 9.0, 5.0  # scans with a good fit before a place is compared, and once more
 LEAD = 0.15  # by which recent scans must support it more than any other: see `RecentScans.compare`
+PATIENCE = 3  # comparisons in vain for want of scans, after which the scans of one place may do
 JUMP, PROOF = 0.5, 0.75  # metres of a jump that resets the fast fit, and the share it resets to
 FRESH = 0.1  # share of the particles drawn again until then
 FIRST_TRIED, TRIED, PLACES = 5000, 3000, 16  # poses tried at first, later, and kept
@@ -126,6 +128,7 @@ class Localisation:
         self._settled = pose is not None
         self._unsettled = 0.0 if self._settled else SETTLING
         self._recent.forget()
+        self._in_vain = 0
         self._searches = 0 if pose else LATELY
         self._odometry = None
         self._sum_up()
@@ -213,7 +216,9 @@ class Localisation:
         if self._settled:
             self._searches = 0
         elif not self._unsettled:
-            compared = self._recent.compare(self._anchor, odometry, points)
+            fewest = FEWEST_SCANS if self._in_vain < PATIENCE else 1
+            compared = self._recent.compare(self._anchor, odometry, points, fewest=fewest)
+            self._in_vain = self._in_vain + 1 if compared.lead == -inf else 0
             self._settled = compared.lead > LEAD
             self._unsettled = 0.0 if self._settled else AGAIN
             if self._settled:  # the comparison ruled out all other places

@@ -77,7 +77,9 @@ class RecentScans:
         best = max(fits.max(initial=FLOOR), scores.max(initial=FLOOR))
         self._kept.append((odometry, points, log(best)))
 
-    def compare(self, pose: Pose, odometry: Pose, points: Floats) -> Comparison:
+    def compare(
+        self, pose: Pose, odometry: Pose, points: Floats, *, fewest: int = FEWEST
+    ) -> Comparison:
         """Take a scan, and compare a pose with the other places that the scans support.
 
         The lead is by how much the scans support the pose more: the sum over the scans of the
@@ -89,10 +91,11 @@ class RecentScans:
             pose: the pose that may be believed, in m and rad.
             odometry: pose by odometry.
             points: ends of the beams (n, 2) in the robot's frame.
+            fewest: scans, some way apart, that are needed to say anything.
         """
         self.note(odometry, points)
         poses = _distinct(np.vstack((np.asarray([pose]), self._places)), PLACES + 1)
-        if len(self._kept) < FEWEST:
+        if len(self._kept) < fewest:
             return Comparison(-inf)
         if len(poses) == 1:
             return Comparison(inf)
