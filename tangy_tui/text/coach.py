@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import FRONT, ActivityState, Situation
+from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import card_words, moment_words
 
 if TYPE_CHECKING:
@@ -126,14 +127,14 @@ def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) ->
     if "…" in said and isinstance(activity, DeclaredActivity):
         stages = Counter(situation.stage for situation in missing)
         named = ((activity.stage_words(stage), n) for stage, n in stages.items())
-        by_stage = [f"{words} ({n})" if n > 1 else words for words, n in named]
+        by_stage = [f"{n}x {words}" if n > 1 else words for words, n in named]
         return _joined(len(missing), by_stage, room)
     return said
 
 
 def _joined(count: int, names: Sequence[str], room: int) -> str:
     """Name as many as fit; count the others."""
-    said = f"Still to show ({count}): "
+    said = f"Still to show ({counted(count, 'situation')}): "
     for number, label in enumerate(names):
         joint = " · " if number else ""
         rest = len(names) - number
