@@ -139,7 +139,7 @@ class TeachingSession:
 
     @property
     def sayable(self) -> tuple[str, ...]:
-        """The commands that can be carried out now, most often demonstrated first."""
+        """The commands that can be carried out now: what is due, then what was shown most."""
         if self.demonstration.finished:
             return ()
         situation = self.world.observe().situation

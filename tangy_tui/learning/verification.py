@@ -214,9 +214,9 @@ class Verifier:
     def sayable(self, usual: Sequence[str] = (), world: object = None) -> tuple[str, ...]:
         """Return a phrase for each behaviour that can be done now, best first.
 
-        The `usual` behaviours come first, then the expected one. In a `world` with a game declared
-        by facts, the best-fitting behaviours follow; in other worlds, the behaviours for one person
-        if the robot is beside one, otherwise those for the group.
+        The expected behaviour comes first, because it is due, then the `usual` ones. In a `world`
+        with a game declared by facts, the best-fitting behaviours follow; in other worlds, the
+        behaviours for one person if the robot is beside one, otherwise those for the group.
         """
         state, activity = self._observe(), self._activity
         expected = activity.expected.get(state.situation)
@@ -224,7 +224,7 @@ class Verifier:
         rest = sorted(activity.behaviours, key=lambda name: self._attends(name) is not beside)
         if isinstance(game := getattr(world, "game", None), DeclaredGame):
             rest = fitting(game)
-        order = dict.fromkeys((*usual, *([expected] if expected else ()), *rest))
+        order = dict.fromkeys((*([expected] if expected else ()), *usual, *rest))
         phrases: list[str] = []
         for name in order:
             behaviour = self._activity.behaviours.get(name)

@@ -125,7 +125,7 @@ def test_uncertain_words_offer_alternatives_in_turn(
     assert teaching.question == refused[0], "a wrong number leaves the question open"
 
 
-def test_suggestions_are_never_refused_and_start_with_the_most_frequent(
+def test_suggestions_are_never_refused_and_what_is_due_comes_before_the_frequent(
     store: Store,
 ) -> None:
     teaching = begun(store)
@@ -138,7 +138,10 @@ def test_suggestions_are_never_refused_and_start_with_the_most_frequent(
         teach(other, "tell a joke" if seed > 1 else "greet everyone")
     fourth = session(store, seed=4)
     fourth.begin(resume=False)
-    assert fourth.sayable[:2] == ("tell a joke", "greet everyone")
+    assert fourth.sayable[:2] == ("greet everyone", "tell a joke")
+    silent = session(store, seed=5, activity=replace(BINGO, expected={}))  # nothing is due by it
+    silent.begin(resume=False)
+    assert silent.sayable[:2] == ("tell a joke", "greet everyone")
 
 
 @pytest.mark.parametrize("expected", [BINGO.expected, {}])
