@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.scene import ArrangedSituation
 from tangy_profiles.state import FRONT, ActivityState, Situation
-from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import card_words, moment_words
 
 if TYPE_CHECKING:
@@ -134,7 +133,7 @@ def unseen_words(activity: Activity, missing: Sequence[Situation], room: int) ->
 
 def _joined(count: int, names: Sequence[str], room: int) -> str:
     """Name as many as fit; count the others."""
-    said = f"Still to show ({counted(count, 'situation')}): "
+    said = f"{count} still to show: "
     for number, label in enumerate(names):
         joint = " · " if number else ""
         rest = len(names) - number

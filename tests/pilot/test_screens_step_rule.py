@@ -93,8 +93,8 @@ async def test_a_small_screen_names_every_missing_stage(run: Run, tmp_path: Path
     screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
     async with run(app=Program(workspace, clock=StillClock()), size=(80, 24)) as pilot:
         await pilot.app.push_screen(screen)
-        await until_shown(pilot, lambda: "Still to show" in screen_text(pilot.app))
-        unseen = screen_text(pilot.app).partition("Still to show")[2].partition("\n>")[0]
+        await until_shown(pilot, lambda: "still to show" in screen_text(pilot.app))
+        unseen = screen_text(pilot.app).partition("still to show")[2].partition("\n>")[0]
         seen = {step.state.stage for step in screen.teaching.demonstration.steps}
         left = {one.stage for one in workspace.activity.situations} - seen
         assert left
