@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_profiles.behaviour import Action
 from tangy_profiles.codec import encode
 from tangy_profiles.declared.speech import media

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.declared.judging import CERTAIN
-from tangy_profiles.declared.typed_observations import about, sayable
+from tangy_profiles.declared.typed_observations import sayable
 from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
@@ -139,14 +139,15 @@ class RobotControls:
             return StaffNote("nothing to tell")
         unclear = said.rstrip().endswith(UNCLEAR) or command.sure < CERTAIN
         sure = min(command.sure, UNCLEAR_SURE if unclear else 1.0)
-        if not robot.tell(command.person, said, sure, command.source):
-            return StaffNote("not told", words=", ".join(sayable(robot.game)))
+        found = robot.tell(command.person, said, sure, command.source)
+        if found is None:
+            return StaffNote("not told", words=", ".join(sayable(robot.ahead)))
         heard = command.source == "speech"
-        self._note("heard" if heard else "told", person=command.person or "", detail=said)
-        asked = robot.may_ask_again(command.person or about(robot.game))
+        self._note("heard" if heard else "told", person=found.who or "", detail=said)
+        asked = robot.may_ask_again(found.who)
         if unclear and not asked:  # then the game asks staff instead
-            return StaffNote("not told", words=", ".join(sayable(robot.game)))
-        return StaffNote("told", command.person or "", said)
+            return StaffNote("not told", words=", ".join(sayable(robot.ahead)))
+        return StaffNote("told", found.who or "", said)
 
     def _tell_of_card(self, eyes: StaffCardReports, command: Tell) -> StaffNote:
         """Report the state of the card beside a robot that cannot read cards."""

@@ -184,7 +184,8 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
 def _staff_words(moment: Moment, name: Name) -> tuple[str, str] | None:
     what = moment.what
     if isinstance(what, Noted):
-        return (what.by, action_words(what, name)) if what.by not in ("", TANGY) else None
+        staff = what.by_staff and what.by != TANGY
+        return (what.by, action_words(what, name)) if staff else None
     move = getattr(what, "move", None)
     fault: Fault | None = getattr(what, "fault", None)
     if move is None or fault is None or not move.by or move.kind not in STAFF_MOVES:

@@ -16,7 +16,7 @@ PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
 
 def action_line(noted: Noted, name: Name) -> str:
     """Tell what was done, and who did it, in a sentence."""
-    return f"{action_words(noted, name)}{f', by {noted.by}' if noted.by else ''}."
+    return f"{action_words(noted, name)}{f', by {noted.by}' if noted.by_staff else ''}."
 
 
 def action_words(noted: Noted, name: Name) -> str:

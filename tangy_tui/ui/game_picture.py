@@ -7,7 +7,9 @@ from typing import Any
 
 from textual.screen import Screen
 
+from tangy_profiles.declared.speech import with_names
 from tangy_profiles.game_records import CallMade, CallStage
+from tangy_profiles.present_moment import as_present
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import (
     Acted,
@@ -80,7 +82,10 @@ class GamePicture:
 
     @property
     def said(self) -> str:
-        """Tangy's speech in the last step of the present game, "" before that."""
+        """Tangy's speech in this or the last step of the present game, "" before that."""
+        now = as_present(self._supervision.world)
+        if now is not None and now.saying:
+            return with_names(now.saying, self._workspace.name)
         return self.grounds[-1].acted.speech if self.grounds else ""
 
     def begin(self) -> None:
@@ -142,6 +147,9 @@ class GamePicture:
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
         """Update the status line: robot, stage and note."""
+        now = as_present(self._supervision.world)
+        if now is not None and self._game and not self._supervision.over:
+            self._stage = self._workspace.activity.in_words(now.moment.situation)
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, self._workspace.activity),

@@ -10,7 +10,8 @@ from typing import cast
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_profiles.codec import decode, encode
 from tangy_profiles.declared.acts import acts, raw
 from tangy_profiles.declared.typed_observations import TypedObservation

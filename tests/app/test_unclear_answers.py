@@ -56,8 +56,12 @@ def test_only_a_certain_spoken_answer_is_judged(tmp_path: Path) -> None:
         activity, ("user1", "user2"), cast(RobotLink, link), load_robot(), load_room(), seed=1
     )
     world.begin()
-    noted: list[str] = []
-    controls = RobotControls(world, lambda did, **_: noted.append(did), lambda: False, paced=False)
+    noted: list[tuple[str, str]] = []
+
+    def note(did: str, *, person: str = "", detail: str = "") -> None:
+        noted.append((did, person))
+
+    controls = RobotControls(world, note, lambda: False, paced=False)
     for name, target in (("welcome everyone", None), ("ask question", "user1")):
         world.execute(activity.action(activity.behaviour(name), target, None))
     option = activity.declaration.items.value(world.game.row, "a")
@@ -67,4 +71,4 @@ def test_only_a_certain_spoken_answer_is_judged(tmp_path: Path) -> None:
     assert [(one.source, one.asked_again) for one in done.unclear] == [("speech", True)]
     assert controls.do(Tell(None, option, 0.95, "speech")).kind == "told"
     assert world.observe().stage == "judge"
-    assert "heard" in noted
+    assert ("heard", "user1") in noted

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld, FactObservation
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_profiles.declared.activity import DeclaredActivity, read_declared
 from tangy_profiles.declared.acts import Act, acts, raw
 from tangy_profiles.declared.game import DeclaredGame
@@ -104,6 +105,39 @@ def test_a_reported_answer_counts_at_the_next_observation(world: DeclaredLiveWor
     assert world.tell(None, right(world))
     assert world.observe().stage == "judge"
     assert dict(world.observe().facts)["answer"] == "right"
+
+
+def test_an_answer_counts_that_staff_report_while_the_question_is_spoken(
+    world: DeclaredLiveWorld, link: FakeLink
+) -> None:
+    do(world, "welcome everyone")
+    seen: list[tuple[str, str, bool]] = []
+
+    def answer(what: str, time: float) -> None:
+        if what == "perform" and not seen:
+            row = world.ahead.row
+            said = world.activity.declaration.items.value(row, "right")
+            told = world.tell(None, said)
+            seen.append((world.saying, world.moment.stage, told is not None))
+
+    link.meanwhile = answer
+    do(world, "ask question", "user1")
+    ((saying, stage, taken),) = seen
+    assert "question 1" in saying, "staff read the question while it is spoken"
+    assert stage == "listen", "and not that none is open"
+    assert taken
+    assert dict(world.observe().facts)["answer"] == "right"
+    assert world.ahead is world.game
+
+
+def test_a_question_that_was_broken_off_is_not_open(
+    world: DeclaredLiveWorld, link: FakeLink
+) -> None:
+    do(world, "welcome everyone")
+    link.breaks["perform"] = "stopped"
+    do(world, "ask question", "user1")
+    assert world.moment.stage == "next"
+    assert not world.tell(None, "the right one")
 
 
 def test_the_scene_words_what_people_do_as_the_file_does(world: DeclaredLiveWorld) -> None:

@@ -30,7 +30,7 @@ from tangy_tui.monitoring.house import (
 from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
 from tangy_tui.pages.house import house_page, person_page
 from tangy_tui.text.report import attention_lines, care_lines
-from tangy_tui.text.staff_actions import action_words
+from tangy_tui.text.staff_actions import action_line, action_words
 from tests.support.games import play
 
 DICTIONARY = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
@@ -162,6 +162,14 @@ def test_the_log_lists_absent_people_of_a_game(workspace: Workspace, learnt: Pol
     run.apply(GoesAway("user3"))
     (begun,) = read_games(workspace.store)
     assert begun.away == {"user2"}
+
+
+def test_what_tangy_hears_is_not_told_as_done_by_staff() -> None:
+    rosa = {"user1": "Rosa"}.__getitem__
+    heard = Noted("heard", "Ada", person="user1", detail="honey")
+    assert action_line(heard, rosa) == "Tangy heard of Rosa: honey."
+    told = Noted("told", "Ada", person="user1", detail="honey")
+    assert action_line(told, rosa).endswith(", by Ada.")
 
 
 def test_names_replace_ids_next_to_any_punctuation() -> None:

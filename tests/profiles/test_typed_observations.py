@@ -64,3 +64,12 @@ def test_the_suggestions_are_the_options_and_the_facts() -> None:
     game = _game("trivia", "welcome everyone", "ask question")
     assert sayable(game) == ["Mars", "Earth", "Saturn"]
     assert sayable(_game("exercises")) == ["joins", "tired"]
+
+
+def test_options_are_suggested_only_while_their_question_is_open() -> None:
+    assert sayable(_game("trivia", "welcome everyone")) == []
+    game = _game("trivia", "welcome everyone", "ask question")
+    assert game.observe("answer", game.players[game.turn], "Mars")
+    assert sayable(game) == ["Mars", "Earth", "Saturn"], "a person may correct themselves"
+    game.execute("tell answer", game.players[game.turn])
+    assert sayable(game) == []

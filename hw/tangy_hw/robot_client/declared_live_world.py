@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.declared_tracker import DeclaredTracker
+from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
@@ -41,25 +42,21 @@ LOOK_SECONDS = 0.5  # between two observations of people
 PATIENCES = 2.0  # windows of patience after which a person counts as not complying
 
 
-class FactObservation(NamedTuple):
-    """An observation of a person: the fact, its certainty, and its source."""
-
-    told: TypedObservation
-    certainty: float
-    source: str
-
-
 class DeclaredLiveWorld(LiveWorld):
     """A room with a robot and people who play an activity declared by facts."""
 
     activity: DeclaredActivity
     game: DeclaredGame
+    ahead: DeclaredGame
+    """The game as it will be after the behaviour that the robot performs, else as it is."""
     sees_all = False
     """Whether everything that people do is reported, so that no report means no action."""
 
     def __init__(self, activity: DeclaredActivity, *both: Any, **named: Any) -> None:
         """Create the world of a robot that is switched on, as `LiveWorld` does."""
         self._told: deque[FactObservation] = deque()
+        self.saying = ""
+        """The speech of the behaviour in progress, with people by their ids; "": none yet."""
         self.unsure: FactObservation | None = None
         """Latest observation too uncertain to be judged: the person is asked again."""
         super().__init__(activity, *both, **named)
@@ -69,6 +66,7 @@ class DeclaredLiveWorld(LiveWorld):
         self.game = drawn_game(self.activity.declaration, self.people, self._order.random)
         for person in sorted(self.away):
             self.game.observe(HERE, person, NO)
+        self.ahead, self.saying = self.game, ""
         self._progress = ProgressWatch(self.game)
         self.tracker = DeclaredTracker(self.activity, self.game)
         self._started = self.link.time
@@ -99,7 +97,7 @@ class DeclaredLiveWorld(LiveWorld):
             raise NotResumable(OTHERWISE)
         for _ in range(past.beginning.number):
             self._begin()  # each game of a run has its own order of items
-        self.game = game
+        self.game = self.ahead = game
         self.away = frozenset(self.people) - frozenset(game.here)
         self._plan_without(self.away)
         self.tracker = DeclaredTracker(self.activity, game)
@@ -127,7 +125,7 @@ class DeclaredLiveWorld(LiveWorld):
 
     def tell(
         self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
-    ) -> bool:
+    ) -> TypedObservation | None:
         """Add a report about a person, or a person's own answer.
 
         It takes effect at the next observation, so that it never changes a behaviour in progress.
@@ -139,12 +137,12 @@ class DeclaredLiveWorld(LiveWorld):
             source: source of the report, for the log.
 
         Returns:
-            Whether the words state a fact.
+            What the words state about whom; None if they state no fact.
         """
-        found = None if self.over else meant(self.game, who, said)
+        found = None if self.over else meant(self.ahead, who, said)
         if found is not None:
             self.take(FactObservation(found, certainty, source))
-        return found is not None
+        return found
 
     def take(self, observed: FactObservation) -> None:
         """Add an observation of a fact; it takes effect at the next `observe`."""
@@ -157,6 +155,11 @@ class DeclaredLiveWorld(LiveWorld):
             self._take_in()
             self.requests.tell(self.tracker)
         return joint_state(self.game)
+
+    @property
+    def moment(self) -> ActivityState:
+        """The joint state with the behaviour in progress, as it is known now."""
+        return joint_state(self.ahead)
 
     def look_again(self) -> ActivityState:
         """Return the joint state a moment later: there is nothing to read again."""
@@ -220,6 +223,7 @@ class DeclaredLiveWorld(LiveWorld):
                 response = self._watch(done, action)
         except DeviceError as error:
             self.broken = str(error)
+        self.ahead = game
         if not done.completed:
             game.failed()
         self.over = game.over
@@ -245,6 +249,7 @@ class DeclaredLiveWorld(LiveWorld):
         after = game.copy()
         after.execute(behaviour.name, whom)
         speech, image = words(after, game, behaviour.name, action.strategy, whom)
+        self.ahead, self.saying = after, speech
         asks = "" if behaviour.persuades else self.seat_of(whom)
         shown, heard = media(after, behaviour.name)
         file = shown.path if shown else ""
@@ -271,7 +276,7 @@ class DeclaredLiveWorld(LiveWorld):
     def _count(self, name: str, whom: str | None) -> Execution:
         """Count an executed behaviour, and wait for the signs of settled requests to come down."""
         asked = list(self.game.queue)
-        done = self.game.execute(name, whom)
+        done, self.ahead = self.game.execute(name, whom), self.game
         self._did.clear()
         for person in asked:
             if person in self.game.queue or self.game.over:
@@ -337,11 +342,9 @@ class DeclaredLiveWorld(LiveWorld):
     def _note_unclear(self, *, asked_again: bool = False) -> None:
         """Record the unjudged answer for the log, and drop it."""
         observed, self.unsure = self.unsure, None
-        if observed is None:
+        if observed is None or not (who := observed.told.who):
             return
-        fact, who, said = observed.told
-        if who is None:
-            return
+        fact, _, said = observed.told
         self._not_clear.append(
             UnclearAnswer(who, fact, said, observed.certainty, observed.source, asked_again)
         )

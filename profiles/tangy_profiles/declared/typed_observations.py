@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from tangy_profiles.declared.acts import Act, take_in
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.judging import judged, plain_words
 from tangy_profiles.declared.model import Fact
@@ -63,9 +64,14 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation |
 
 
 def sayable(game: DeclaredGame) -> list[str]:
-    """Return words that can be observed now: the options, and values or names of facts."""
+    """Return words that can be observed now: the options, and values or names of facts.
+
+    The options are there while their question is open.
+    """
     found: list[str] = []
     for fact in can_be_told(game):
+        if fact.checks and not is_open(game, fact):
+            continue
         if fact.checks:
             items = game.declaration.items
             found += [one for c in fact.options if (one := items.value(game.row, c))]
@@ -74,6 +80,17 @@ def sayable(game: DeclaredGame) -> list[str]:
         else:
             found.append(fact.name)
     return found
+
+
+def is_open(game: DeclaredGame, fact: Fact) -> bool:
+    """Return whether a question is open: an answer would change the situation of the game."""
+    seen = game.seen()
+    for who in game.here if fact.per_player else (None,):
+        for value in fact.values[1:]:
+            answered = game.copy()
+            if take_in(answered, Act(fact.name, who, value)) and answered.seen() != seen:
+                return True
+    return False
 
 
 def about(game: DeclaredGame) -> str | None:

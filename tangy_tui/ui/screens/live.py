@@ -289,7 +289,7 @@ class LiveScreen(PlayScreen):
     async def _tell_of(self) -> None:
         world, workspace = self.world, self._workspace
         if isinstance(world, DeclaredLiveWorld):
-            person, words = about(world.game), tuple(sayable(world.game))
+            person, words = about(world.ahead), tuple(sayable(world.ahead))
         else:
             person, words = self.control.robot.asks_about
         dialog = TellDialog(workspace.name(person) if person else "", words)
