@@ -489,3 +489,21 @@ async def test_the_teaching_picture_in_the_readme_is_current(
     if os.environ.get("TANGY_NEW_PICTURES"):
         kept.write_text(drawn, encoding="utf-8")
     assert kept.read_text(encoding="utf-8") == drawn, "draw it anew with TANGY_NEW_PICTURES=1"
+
+
+async def test_a_notice_stands_in_the_log_and_covers_nothing(
+    run: Run, workspace: Workspace
+) -> None:
+    screen = TeachScreen(workspace, workspace.teaching("ann", 1))
+    program = Program(workspace, clock=StillClock())
+    async with run((80, 24), app=program) as pilot:
+        await program.push_screen(screen)
+        await pilot.pause()
+        before = screen_text(pilot.app).splitlines()
+        program.say("Tangy is learning ...")
+        await pilot.pause()
+        after = screen_text(pilot.app).splitlines()
+        changed = [n for n, (one, two) in enumerate(zip(before, after, strict=True)) if one != two]
+        assert any("Tangy is learning" in after[n] for n in changed)
+        first = next(n for n, line in enumerate(after) if "still to show" in line)
+        assert all(n < first for n in changed)

@@ -303,6 +303,11 @@ class TeachScreen(TangyScreen[bool]):
         """Run the action of a global key."""
         follow_word(self, Perform(action), "")
 
+    def take_sentence(self, sentence: str) -> bool:
+        """Show a notice in the log: in a corner it would cover what is still to show."""
+        self._log.write(sentence, "dim")
+        return True
+
     def on_stop(self, message: Stop) -> None:
         """Stop the robot where it is drawn, until the next command."""
         self.query_one(RoomView).hold(True)
@@ -314,7 +319,6 @@ class TeachScreen(TangyScreen[bool]):
             events = self.teaching.apply(command)
         except TangyError as error:  # logging failed, so nothing was done
             self._log.write(str(error), "bad")
-            self.notify(str(error), severity="error", markup=False)
             self.query_one(CommandBar).ready()
             self._listener.open(True)
         else:
