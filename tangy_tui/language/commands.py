@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -113,7 +114,7 @@ class Phrasebook:
         if learnt is not None:
             mentions = Mentions(self.table, self.nouns)
             for_people = self._to_people | {b.name for b in activity.behaviours.values() if b.to}
-            self._learnt = Paraphrases(lambda: learnt(activity), mentions, for_people)
+            self._learnt = Paraphrases(cache(lambda: learnt(activity)), mentions, for_people)
 
     def understand(self, text: str) -> Command | None:
         """Find the behaviour that a text asks for.

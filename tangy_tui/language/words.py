@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from functools import lru_cache
 
 LONGEST_TEXT = 200  # characters of a command; the rest is ignored
 
@@ -25,6 +26,7 @@ _ACCENTS = re.compile("[\u0300-\u036f]")
 Words = tuple[str, ...]
 
 
+@lru_cache(maxsize=1 << 13)
 def likeness(said: str, known: str) -> float:
     """Return the similarity of a word to a known one, as a misspelling: from 0 to 1.
 

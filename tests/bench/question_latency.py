@@ -13,22 +13,34 @@ import math
 import os
 import statistics
 import tempfile
+from itertools import product
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
 from tangy_hw.audio.wav import RATE
+from tangy_profiles.activity import load_activity
+from tangy_profiles.person import load_people
+from tangy_profiles.room import load_room
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.intents import Intents
 from tangy_tui.speech.evidence import USUAL
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.understanding import understand, wanted
-from tests.bench.speech import BOOK
 from tests.bench.spoken_stops import QUIET, Said, Voices
 
-SENTENCES = (
-    *("call the next number", "greet everyone", "tell a joke", "go to user two"),
-    *("ask to move the card closer", "would you read out another number please"),
-)
+BOOK = Phrasebook(load_activity("bingo"), load_room().placed(load_people(4)), Intents().model)
+SENTENCES = {
+    "phrases": (
+        *("call the next number", "greet everyone", "tell a joke", "go to user two"),
+        "ask to move the card closer",
+    ),
+    "other sentences": (
+        *("would you read out another number please", "make them laugh a little"),
+        *("say something kind to berta", "i think he could use some help with his card"),
+    ),
+}
 VOICES = ("slt", "rms", "awb", "kal_diphone")
 AFTER = (0.0, 0.3, 0.6)  # s from the last word to the key
 PIECE = 2 * round(0.04 * RATE)  # bytes
@@ -52,20 +64,27 @@ async def press(recogniser: Recogniser, pcm: bytes, after: float) -> float:
 
 
 async def measure(times: int) -> None:
-    """Print the median, the 95th percentile and the longest time for each moment of the key."""
+    """Print median, 95th percentile and longest time, of phrases and of sentences that are none."""
     recogniser = Recogniser()
     await recogniser.start(wanted(BOOK, USUAL))
-    said = [Said("", text, voice) for text in SENTENCES for voice in VOICES]
+    said = {
+        kind: [Said("", text, voice) for text in texts for voice in VOICES]
+        for kind, texts in SENTENCES.items()
+    }
     with tempfile.TemporaryDirectory() as folder:
         voices = Voices(Path(folder))
-        voices.say(said)
-        sounds = [voices.heard(one, "clean", ())[: -2 * QUIET] for one in said]
-    await press(recogniser, sounds[0], 0.0)  # models are loaded
-    for after in AFTER:
-        found = sorted([await press(recogniser, pcm, after) for pcm in sounds * times])
+        voices.say([one for every in said.values() for one in every])
+        sounds = {
+            kind: [voices.heard(one, "clean", ())[: -2 * QUIET] for one in every]
+            for kind, every in said.items()
+        }
+    for every in sounds.values():  # models are loaded
+        await press(recogniser, every[0], 0.0)
+    for after, kind in product(AFTER, sounds):
+        found = sorted([await press(recogniser, pcm, after) for pcm in sounds[kind] * times])
         late = found[math.ceil(0.95 * len(found)) - 1]
         print(
-            f"{after:.1f} s after the last word, n {len(found)}: median "
+            f"{kind}, {after:.1f} s after the last word, n {len(found)}: median "
             f"{1000 * statistics.median(found):.0f} ms, p95 {1000 * late:.0f} ms, longest "
             f"{1000 * found[-1]:.0f} ms; load {os.getloadavg()[0]:.1f}",
             flush=True,

@@ -180,6 +180,20 @@ def test_of_several_guesses_the_likeliest_meaning_on_the_weighted_average_counts
     assert BOOK.paraphrased(guesses[0], "the weather is nice today", "my back hurts") == ()
 
 
+def test_the_model_is_looked_up_once_for_all_guesses_and_sentences() -> None:
+    asked, activity = [], load_activity("bingo")
+
+    def learnt(one: Activity) -> IntentModel:
+        asked.append(one)
+        return Intents().model(one)
+
+    book = Phrasebook(activity, load_people(4), learnt)
+    assert asked == []  # it may have to be trained first
+    for _ in range(2):
+        assert book.paraphrased("would you read out another number", "read a number out")
+    assert asked == [activity]
+
+
 def test_nothing_is_offered_if_the_best_guess_forbids_it() -> None:
     others = ("do let us tell another joke", "let us tell another joke", "let's tell another joke")
     assert BOOK.paraphrased(*others)[0].behaviour == "joke"
