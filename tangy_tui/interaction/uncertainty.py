@@ -18,8 +18,8 @@ def why_not(activity: Activity, state: ActivityState, decision: Decision) -> str
     if not decision.seen:
         return f"Nobody has shown Tangy what to do here yet: {situation}."
     return (
-        f"Tangy is not sure what to do here: {situation} ({decision.share:.0%} of the votes for "
-        f"{activity.behaviour_words(decision.behaviour)})."
+        f"Tangy is not sure what to do here: {situation} ({decision.share:.0%} sure of "
+        f"{activity.behaviour_words(decision.behaviour)!r})."
     )
 
 

@@ -21,11 +21,10 @@ if TYPE_CHECKING:
 
 def shown_here(seen: int, share: float) -> str:
     """Tell how often a behaviour was demonstrated, and its share of the votes if that is not 1."""
-    votes = f"{share:.0%} of the votes"
     if not seen:
-        return f"a guess of the trees, {votes}"
+        return f"a guess, {share:.0%} sure"
     times = "once" if seen == 1 else f"{seen} times"
-    return f"as shown {times}" if share >= 1 else f"as shown {times}, {votes}"
+    return f"as shown {times}" if share >= 1 else f"as shown {times}, {share:.0%} sure"
 
 
 def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -> list[str]:
@@ -59,17 +58,15 @@ def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -
             right = listed((repr(activity.behaviour_words(b)) for b in decision.right), "or")
             sentences.append(f"A teacher said that {right} is right here.")
         if not decision.sure:
-            sentences.append(
-                f"Fewer than {SURE:.0%} of the trees agree. Tangy asks instead of acting."
-            )
+            sentences.append(f"Tangy is less than {SURE:.0%} sure, so it asks instead of acting.")
     if votes and (len(decision.votes) > 1 or not decision.seen):
         shares = ", ".join(
             f"{activity.behaviour_words(b)} {share:.0%}" for b, share in decision.votes
         )
-        sentences.append(f"Votes of the trees: {shares}.")
+        sentences.append(f"{HOW_SURE}: {shares}.")
     if why.near:
         guesses = dict.fromkeys(activity.in_words(s.step.state.situation) for s in why.near)
-        sentences.append(f"The trees guess from what was shown nearby: {'; '.join(guesses)}.")
+        sentences.append(f"Tangy guesses from what was shown nearby: {'; '.join(guesses)}.")
     return sentences
 
 
@@ -120,7 +117,8 @@ def shown_words(activity: Activity, shown: DemonstratedStep, name: Callable[[str
 
 WHY_HEADINGS = ("Based on", "Shown here as well", "Shown nearby")
 """Headings of the supporting, contradicting and similar steps."""
-VOTES = "Votes of the trees"
+HOW_SURE = "How sure Tangy is"
+"""Heading of the share of the votes for each behaviour."""
 
 
 def strategy_title(name: str, strategy: str) -> str:

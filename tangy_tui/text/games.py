@@ -23,7 +23,7 @@ from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.games import ENDED_EARLY
 from tangy_tui.text.changes import changed_lines
-from tangy_tui.text.decisions import addressed_words, because_words, why_words
+from tangy_tui.text.decisions import HOW_SURE, addressed_words, because_words, why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted
@@ -163,7 +163,7 @@ def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -
     decision = supervision.policy.decide(situation) if question is None else question.decision
     votes = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
     reason = world.activity.in_words(situation) if question is None else question.reason
-    return [reason, f"Votes of the trees: {votes}."]
+    return [reason, f"{HOW_SURE}: {votes}."]
 
 
 SKIP = "Play the rest of the game at once?"

@@ -128,7 +128,7 @@ def test_a_vote_below_the_threshold_causes_a_question(
     question = until_asked(facilitation)
     assert question.state.situation in low
     assert question.decision.seen
-    assert "% of the votes" in question.reason
+    assert "% sure of" in question.reason
     reply(facilitation, activity)
     assert facilitation.policy.settings == PAPER
 

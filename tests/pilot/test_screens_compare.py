@@ -113,13 +113,13 @@ async def test_the_policy_screen_explains_decisions_and_marks_contested_ones(
         screen = await shown(pilot, PolicyScreen)
         kept = last_policy(workspace.store, workspace.activity.name)
         assert kept is not None
-        assert kept.digest[:8] in screen_text(pilot.app)
+        assert kept.name in screen_text(pilot.app)
         assert "1 contested" in screen_text(pilot.app)
         assert "contested" in [row.behaviour for row in screen.query_one("#policy").rows]
         await pilot.press("down", "down", "enter")
         await pilot.pause()
         assert isinstance(pilot.app.screen, WhyDialog)
-        assert "Votes of the trees" in screen_text(pilot.app)
+        assert "How sure Tangy is" in screen_text(pilot.app)
         await pilot.press("escape", "w")
         await pilot.pause()
         assert isinstance(pilot.app.screen, WhyDialog)

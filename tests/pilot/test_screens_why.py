@@ -87,7 +87,7 @@ async def test_the_dialog_shows_votes_before_draws(
             await pilot.press("down")
             seen += screen_text(pilot.app)
         assert workspace.activity.in_words(why.situation).partition(" · ")[0] in seen
-        assert "Votes of the trees" in seen
+        assert "How sure Tangy is" in seen
         assert "Thompson sampling" in seen
         for strategy, number in choice.draws.items():
             assert strategy in seen

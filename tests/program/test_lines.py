@@ -392,7 +392,7 @@ def test_why_and_where_work_at_a_question(workspace: Workspace) -> None:
     why, *others = asked(workspace, "why", "Where")
     assert why == "Situation: the game has not begun."
     assert "Nobody has shown Tangy what to do here. It asks instead of acting." in others
-    assert "Votes of the trees: call number 100%." in others
+    assert "How sure Tangy is: call number 100%." in others
     assert (
         others[-1]
         == "Now: the game has not begun. Tangy is at the front. Nobody asks for help. (asking)"
@@ -402,7 +402,7 @@ def test_why_and_where_work_at_a_question(workspace: Workspace) -> None:
 def test_why_without_demonstrations_prints_the_votes(workspace: Workspace) -> None:
     assert asked(workspace, "why", knows=False) == [
         "Nobody has shown Tangy what to do here yet: the game has not begun.",
-        "Votes of the trees: call number 100%.",
+        "How sure Tangy is: call number 100%.",
     ]
 
 

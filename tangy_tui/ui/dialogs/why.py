@@ -19,7 +19,7 @@ from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.explanation import DecisionReasons
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
-from tangy_tui.text.decisions import VOTES, WHY_HEADINGS, chosen_words, strategy_title, why_words
+from tangy_tui.text.decisions import HOW_SURE, WHY_HEADINGS, chosen_words, strategy_title, why_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -48,9 +48,10 @@ class WhyDialog(Dialog[None]):
         Binding("escape,q,w", "close", "Close", key_display="esc"),
     ]
     HELP = (
-        "What this decision rests on: how the trees voted, which demonstrated steps say so or say "
-        "otherwise, and for a way of speaking the number that was drawn from what is believed of "
-        "each. Up and down choose a step and scroll; Enter opens it where it was demonstrated."
+        "What this decision rests on: how sure Tangy is of each behaviour, which demonstrated "
+        "steps say so or say otherwise, and for a way of speaking the number that was drawn from "
+        "what is believed of each. Up and down choose a step and scroll; Enter opens it where it "
+        "was demonstrated."
     )
 
     def __init__(
@@ -152,7 +153,7 @@ def vote_lines(activity: Activity, why: DecisionReasons, width: int) -> list[Pag
     names = [clean(activity.behaviour_words(behaviour)) for behaviour, _ in votes]
     label = min(max(map(cell_len, names)), max(8, width - 12))
     points = min(LONGEST_BAR, max(0, width - label - 9))
-    lines = heading(VOTES)
+    lines = heading(HOW_SURE)
     for name, (behaviour, share) in zip(names, votes, strict=True):
         decided = behaviour == why.decision.behaviour
         ink = "curve" if share >= SURE else "warn"

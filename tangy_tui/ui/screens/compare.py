@@ -85,8 +85,8 @@ class CompareScreen(TangyScreen[None]):
     CompareScreen #comparison { height: 1fr; }
     """
     HELP = (
-        "Two policies side by side: in each situation what both do, and which share of the trees "
-        "voted for it. Rows that differ come first and have a mark; {differences} shows only "
+        "Two policies side by side: in each situation what both do, and how sure they are "
+        "of it. Rows that differ come first and have a mark; {differences} shows only "
         "these. 1 tells why A does so, and 2 why B does; Enter is 1."
     )
     BINDINGS: ClassVar[list[BindingType]] = [

@@ -20,7 +20,6 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import key_line, panel
-from tangy_tui.ui.policy_options import DIGEST_SHOWN
 from tangy_tui.ui.reasons import why_row
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
@@ -52,8 +51,8 @@ class PolicyScreen(TangyScreen[None]):
 
     CSS_PATH = "policy.tcss"
     HELP = (
-        "One row for each situation that can come about: what Tangy does, which share of the "
-        "trees voted for it, and how often it was demonstrated. Below: what was seen to follow "
+        "One row for each situation that can come about: what Tangy does, how sure it is "
+        "of that, and how often it was demonstrated. Below: what was seen to follow "
         "each behaviour. Choose a row and press Enter or {why} to see why; {compare} compares with "
         "another policy or a teacher, {another} shows another policy, {begin} lets Tangy "
         "play by it. Where nothing was shown, or demonstrations disagree, Tangy asks in the game."
@@ -80,8 +79,7 @@ class PolicyScreen(TangyScreen[None]):
 
     def compose(self) -> ComposeResult:
         """Lay out the table and the effects."""
-        note = f"{self.policy.name} {self.policy.digest[:DIGEST_SHOWN]}"
-        yield StatusLine(Status(mode="policy", note=note))
+        yield StatusLine(Status(mode="policy", note=self.policy.name))
         keymap = keymap_of(self.app)
         yield Static(self._summary(), id="summary", markup=False)
         yield Static(with_keys(text.NOW_PLAY, keymap), id="what-now", markup=False)

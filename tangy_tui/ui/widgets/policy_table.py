@@ -52,7 +52,7 @@ class PolicyTable(Choosable):
     """
 
     HELP = (
-        "What Tangy has learnt: in which situation it does what, the share of the votes for it, "
+        "What Tangy has learnt: in which situation it does what, how sure it is of that, "
         "and how often the situation was shown to it."
     )
 
@@ -166,7 +166,7 @@ class PolicyTable(Choosable):
             (
                 (fit("situation", situation), "dim"),
                 (fit("  behaviour", behaviour + 2), "dim"),
-                (f" {'votes':<{votes + 4}}", "dim"),
+                (f" {'sure':<{votes + 4}}", "dim"),
                 (" seen", "dim"),
             ),
             *(
