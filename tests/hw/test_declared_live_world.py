@@ -190,6 +190,8 @@ def test_an_unclear_answer_is_asked_again_up_to_the_limit(
     }
     again = [text for text in link.said if text in {one.format(name="Ann") for one in ASK_AGAIN}]
     assert len(again) == left
+    pictures = [what["picture"] for done, what in link.done if done == "perform"]
+    assert not [one for one in pictures if "Ann" in (one["text"] + one["asks"])], "seats, no names"
     assert not world.may_ask_again("user1") and world.observe().stage == "listen"
     link.meanwhile = lambda what, time: None
     world.tell("user1", right(world))

@@ -16,7 +16,7 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import FactCondition
 from tangy_profiles.declared.progress import ProgressWatch
-from tangy_profiles.declared.speech import filled, media, words
+from tangy_profiles.declared.speech import filled, media, person_on_screen, words
 from tangy_profiles.game_records import ChangeKind, GameChange
 from tangy_sim.worlds.declared_world import DeclaredWorld
 from tests.support.declared import DECLARED, declared
@@ -163,6 +163,21 @@ def test_absent_players_cannot_ask_answer_or_score(game: DeclaredGame) -> None:
     assert game.holds(every, None)
 
 
+def test_the_screen_names_the_person_asked_while_their_question_stays(game: DeclaredGame) -> None:
+    game.execute("allow time", None)
+    assert person_on_screen(game, None) == "ann", "she has the time"
+    assert person_on_screen(game, "ben") == "ben", "he is spoken to"
+    game.execute("confirm answer", "ann")
+    assert person_on_screen(game, None) is None, "nobody is asked"
+
+
+def test_scores_of_many_people_are_a_list_on_the_screen() -> None:
+    people = [f"p{n}" for n in range(7)]
+    game = DeclaredGame(declared("trivia").declaration, people)
+    text = filled(game, "{score of each}", None, shown=True)
+    assert text.count("\u00a00") == 7 and ", " in text and "  " not in text
+
+
 def test_a_behaviour_differs_if_it_changes_more_than_a_timer(game: DeclaredGame) -> None:
     changes = {"allow time": False, "give hint": True, "confirm answer": True, "tell scores": True}
     for behaviour, differs in changes.items():
@@ -192,7 +207,7 @@ def test_the_screen_keeps_a_question_until_it_shows_something_else(
     again = game_from(game.declaration, PLAYERS, logged)
     assert again is not None and again.screen == game.screen == ("ask question", "ann", "ann")
     assert shown("confirm answer", "ann") == shown("allow time") != question
-    assert "\x02ben\x03 0" in shown("tell scores")
+    assert shown("tell scores").split("  ")[1] == "\x02ben\x03:\u00a00", "a line for each"
     assert shown("close quiz") == game.declaration.title
 
 

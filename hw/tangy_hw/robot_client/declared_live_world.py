@@ -25,7 +25,7 @@ from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.situation_words import words_now
-from tangy_profiles.declared.speech import again, media, with_names, words
+from tangy_profiles.declared.speech import again, media, person_on_screen, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.defaults import ASK_AGAIN
@@ -250,7 +250,7 @@ class DeclaredLiveWorld(LiveWorld):
         after.execute(behaviour.name, whom)
         speech, image = words(after, game, behaviour.name, action.strategy, whom)
         self.ahead, self.saying = after, speech
-        asks = "" if behaviour.persuades else self.seat_of(whom)
+        asks = "" if behaviour.persuades else self.seat_of(person_on_screen(after, whom))
         shown, heard = media(after, behaviour.name)
         file = shown.path if shown else ""
         picture = Picture(with_names(image, self.seat_of), asks=asks, file=file)
@@ -362,9 +362,9 @@ class DeclaredLiveWorld(LiveWorld):
             return 0.0
         began, times = self.link.time, self._asked_again.get(person, 0)
         self._asked_again[person] = times + 1
-        name = self.name_of(person)
-        text = ASK_AGAIN[times % len(ASK_AGAIN)].replace("{name}", name)
-        self.say(text, Picture(text, asks=name))
+        text, seat = ASK_AGAIN[times % len(ASK_AGAIN)], self.seat_of(person)
+        shown = Picture(text.replace("{name}", seat), asks=seat)
+        self.say(text.replace("{name}", self.name_of(person)), shown)
         return self.link.time - began
 
     def _ask_silent(self, words: list[str], who: str, pause: float) -> float:

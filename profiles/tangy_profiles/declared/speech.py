@@ -7,15 +7,19 @@ from collections.abc import Callable
 
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.media import file_name
-from tangy_profiles.declared.model import MediaFile
+from tangy_profiles.declared.model import Fact, MediaFile
 from tangy_profiles.declared.vocabulary import SLOT
 
 PERSON = re.compile(r"\x02([^\x03]*)\x03")
 """A person's id in a filled text, because the worlds do not know names."""
 OF_EACH = " of each"
+MOST_LINES = 6
+"""How many people have a line each on the chest screen; of more, it shows a list."""
 
 
-def filled(game: DeclaredGame, template: str, whom: str | None, turn: str = "") -> str:
+def filled(
+    game: DeclaredGame, template: str, whom: str | None, turn: str = "", *, shown: bool = False
+) -> str:
     """Fill the slots of a text.
 
     Args:
@@ -23,6 +27,7 @@ def filled(game: DeclaredGame, template: str, whom: str | None, turn: str = "") 
         template: the text.
         whom: the player who is addressed, None for the group.
         turn: the player whose turn it is in the text ("": whose turn it is now).
+        shown: it is for the chest screen, not for speech.
 
     Returns:
         The text, with people as ids (see `with_names`); "" if a slot is empty.
@@ -31,7 +36,9 @@ def filled(game: DeclaredGame, template: str, whom: str | None, turn: str = "") 
 
     def value(match: re.Match[str]) -> str:
         nonlocal empty
-        found = _value(game, match.group(1), whom, turn)
+        slot = match.group(1)
+        found = _table(game, slot) if shown else ""
+        found = found or _value(game, slot, whom, turn)
         empty = empty or not found
         return found
 
@@ -64,8 +71,20 @@ def _image(game: DeclaredGame, behaviour: str, whom: str | None) -> str:
     name, person, turn = game.screen or (behaviour, whom, "")
     declared = game.declaration.behaviours[name]
     if declared.image or declared.picture:
-        return filled(game, declared.image, person, turn)
+        return filled(game, declared.image, person, turn, shown=True)
     return game.declaration.title
+
+
+def person_on_screen(game: DeclaredGame, whom: str | None) -> str | None:
+    """Return the person whom the chest screen names after a behaviour, None for nobody.
+
+    It is the one addressed; while their question stays, and is what the game is about, also if
+    Tangy then speaks to everybody.
+    """
+    if whom is not None or game.screen is None:
+        return whom
+    asked = game.screen[1]
+    return asked if asked == game.stage()[1] else None
 
 
 def media(game: DeclaredGame, behaviour: str) -> tuple[MediaFile | None, MediaFile | None]:
@@ -102,8 +121,7 @@ def _value(game: DeclaredGame, slot: str, whom: str | None, turn: str = "") -> s
         return _person(turn or game.players[game.turn])
     if slot == "n":
         return str(game.round) if game.round else ""
-    if slot.endswith(OF_EACH) and slot[: -len(OF_EACH)] in declaration.facts:
-        fact = declaration.facts[slot[: -len(OF_EACH)]]
+    if fact := _fact_of_each(game, slot):
         parts = [f"{_person(one)} {game.number(fact, one):.0f}" for one in game.here]
         *others, last = parts
         return f"{', '.join(others)} and {last}" if others else last
@@ -113,6 +131,22 @@ def _value(game: DeclaredGame, slot: str, whom: str | None, turn: str = "") -> s
     if fact.kind in ("count", "timer"):
         return f"{game.number(fact, whom):.0f}"
     return game.value(slot, whom)
+
+
+def _table(game: DeclaredGame, slot: str) -> str:
+    """Return the counts of each player for the chest screen, "" for other slots.
+
+    A name and its number stay in one line; two spaces begin a line.
+    """
+    if not (fact := _fact_of_each(game, slot)):
+        return ""
+    parts = [f"{_person(one)}:\u00a0{game.number(fact, one):.0f}" for one in game.here]
+    return ("  " if len(parts) <= MOST_LINES else ", ").join(parts)
+
+
+def _fact_of_each(game: DeclaredGame, slot: str) -> Fact | None:
+    facts = game.declaration.facts
+    return facts.get(slot.removesuffix(OF_EACH)) if slot.endswith(OF_EACH) else None
 
 
 def _person(id: str) -> str:
