@@ -43,10 +43,15 @@ class KeyReader:
         """Start to filter before the next key is read, which may arrive together with this one."""
         app: Any = self._app
         top = app.screen_stack[-1] if app.screen_stack else None
-        filters = keymap_of(app).action(event.key) == "filter" and isinstance(top, TangyScreen)
-        if filters and not pasted_text(event):
-            getattr(top, "action_search", app.action_filter)()
-        return filters
+        if keymap_of(app).action(event.key) != "filter" or not isinstance(top, TangyScreen):
+            return False
+        if not pasted_text(event):
+            begin = getattr(top, "action_search", app.action_filter)
+            if top.is_mounted:
+                begin()
+            else:  # it has no widgets yet
+                top.call_later(begin)
+        return True
 
     def _is_typed(self, event: events.Key | events.Paste) -> bool:
         """Let the screen take a letter as text, whatever has the focus."""

@@ -10,10 +10,13 @@ from collections.abc import Iterator
 from functools import partial
 from typing import NamedTuple
 
+from textual import on
+from textual.await_complete import AwaitComplete
 from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.content import Content
+from textual.message import Message
 from textual.types import IgnoreReturnCallbackType
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
 
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.listing import listed
@@ -83,3 +86,14 @@ class Palette(CommandPalette):
         """Stop the cursor's blinking: each blink would be sent to the terminal."""
         for line in self.query(Input):
             line.cursor_blink = False
+
+    def dismiss(self, result: None = None) -> AwaitComplete:
+        """Close the palette once: the next Esc or Enter may come before it is gone."""
+        return super().dismiss(result) if self.is_active else AwaitComplete()
+
+    @on(Input.Submitted)
+    @on(OptionList.OptionSelected)
+    def _keep_first(self, event: Message) -> None:
+        """Ignore Enter if a command was chosen already: it would run twice."""
+        if not self.is_active:
+            event.prevent_default()

@@ -98,7 +98,7 @@ class ConflictsScreen(TangyScreen[bool]):
         present = self._present
         if present is None:
             if key in ("enter", "escape"):
-                self.dismiss(key == "enter")
+                self.close(key == "enter")
         elif key == "escape":
             await self._leave_open(present)
         elif key == "0":

@@ -369,7 +369,7 @@ class SetUpScreen(TangyScreen[bool]):
         detail = " ".join([*not_ready, text.BEGIN_DETAIL])
         dialog = ConfirmDialog(text.BEGIN_ANYWAY, detail, yes="begin", no="wait")
         if not not_ready or await self.app.push_screen_wait(dialog):
-            self.dismiss(True)
+            self.close(True)
 
     def _waits(self, until: float) -> bool:
         """Return whether to wait for devices, at most until a time in s."""
