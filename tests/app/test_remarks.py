@@ -6,16 +6,19 @@ import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
 from tangy_profiles.activity import shipped_activities
+from tangy_profiles.state import ActivityState, Outcome, Progress
 from tangy_profiles.teaching_records import DemonstrationsEdited, Settlement
 from tangy_tui.app.command_grammar import read_settling
 from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.teaching import TeachingLines
+from tangy_tui.learning.effects import progress
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.remarks import answers_to
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
@@ -315,12 +318,20 @@ def test_waiting_for_people_as_the_file_of_the_activity_says_is_no_useless_step(
 def test_a_faultless_teacher_of_a_shipped_activity_gets_no_remark(
     tmp_path: Path, name: str, guided: bool
 ) -> None:
+    led: list[Progress] = []  # also where the file expects the step, which explains it
+
+    def judged(before: ActivityState, outcome: Outcome, after: ActivityState) -> Progress:
+        led.append("on" if outcome.response else progress(before, outcome, after))
+        return led[-1]
+
     for seed in (1, 2, 3):
         teaching = Workspace(tmp_path / str(seed), activity=name).teaching("A", seed, guided=guided)
         teaching.begin(resume=False)
-        told = list(ScriptedTeacher(teaching).demonstrate())
+        with patch("tangy_tui.learning.remarks.progress", judged):
+            told = list(ScriptedTeacher(teaching).demonstrate())
         assert teaching.demonstration.finished
         assert remarks(told) == []
+    assert len(led) > 20 and set(led) <= {"on", "waits"}
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
