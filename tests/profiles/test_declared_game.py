@@ -171,6 +171,15 @@ def test_the_screen_names_the_person_asked_while_their_question_stays(game: Decl
     assert person_on_screen(game, None) is None, "nobody is asked"
 
 
+def test_the_next_item_is_possible_while_items_are_left(game: DeclaredGame) -> None:
+    while game.rounds_left:
+        assert game.execute("ask question", "ann").completed
+    asked = game.round
+    assert not game.allows("ask question", "ann")
+    assert not game.execute("ask question", "ann").completed
+    assert game.round == asked
+
+
 def test_scores_of_many_people_are_a_list_on_the_screen() -> None:
     people = [f"p{n}" for n in range(7)]
     game = DeclaredGame(declared("trivia").declaration, people)

@@ -226,8 +226,13 @@ class DeclaredGame:
             self.now = now
 
     def allows(self, name: str, whom: str | None) -> bool:
-        """Return whether a behaviour is possible now, for a player or the group."""
+        """Return whether a behaviour is possible now, for a player or the group.
+
+        The next item needs one that is left.
+        """
         behaviour = self.declaration.behaviours[name]
+        if behaviour.needs_item and self.order and not self.rounds_left:
+            return False
         if not behaviour.needs:
             return True
         person = whom if whom is not None else self.stage()[1]

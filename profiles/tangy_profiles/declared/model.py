@@ -125,6 +125,11 @@ class DeclaredBehaviour:
         """Whether it asks a person to do something that they may refuse."""
         return any(effect.does == "invite" for effect in self.effects)
 
+    @property
+    def needs_item(self) -> bool:
+        """Whether it presents the next item, whatever the facts are."""
+        return any(one.does == "next item" and not one.conditions for one in self.effects)
+
 
 @dataclass(frozen=True, slots=True)
 class Habit:
