@@ -226,3 +226,15 @@ async def test_leaving_the_bar_with_text_shows_the_keys(run: Run) -> None:
         await pilot.press("colon")
         await pilot.pause()
         assert "call number   call a number" in pilot.text()
+
+
+async def test_the_list_of_commands_closes_when_others_apply(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("tab", "tab")
+        await pilot.pause()
+        assert bar_of(pilot).lists
+        assert "call number" in pilot.text()
+        bar_of(pilot).ready()  # a step was undone by its key
+        await pilot.pause()
+        assert bar_of(pilot).text == ""
+        assert "call number" not in pilot.text()

@@ -309,8 +309,10 @@ class CommandBar(Vertical):
         self._show_above()
 
     def ready(self) -> None:
-        """Open the bar for the next command."""
+        """Open the bar for the next command; a list of commands may no longer apply."""
         self._stop_waiting()
+        if self.lists:
+            self.drop()
         self._input.forget_list()
         if self._input.closed:
             self._input.closed = False
