@@ -26,6 +26,9 @@ LOW = [(0, "-low"), (22, "-tall")]
 ALWAYS_SHOWN = 2
 """The keys at the end of a key line that always stay: esc and ?."""
 
+HOME = "back:home"
+"""The key that leaves a screen with an input line; in the line it has to be pressed twice."""
+
 
 class KeyLine(Static):
     """The keys of a screen on one line; if space is short, those before esc and ? are left out."""
@@ -38,6 +41,20 @@ class KeyLine(Static):
         super().__init__(id="keys")
         self._keys = keys
         self._typing = typing
+        self._in_line = False
+
+    def on_mount(self) -> None:
+        """Follow the focus: in an input line the first Esc only leaves the line."""
+        if HOME in self._keys:
+            self.watch(self.screen, "focused", self._follow_focus)
+
+    def _follow_focus(self, focused: Widget | None) -> None:
+        from textual.widgets import Input
+
+        in_line = isinstance(focused, Input)
+        if in_line is not self._in_line:
+            self._in_line = in_line
+            self._write()
 
     def show(self, *keys: str | Key, typing: bool = False) -> None:
         """Replace the keys: actions of the keymap, or pairs of a key and a word.
@@ -56,6 +73,10 @@ class KeyLine(Static):
         from textual.content import Content
 
         keys = foot(self.app, *self._keys, typing=self._typing)
+        if self._in_line and HOME in self._keys:
+            at = self._keys.index(HOME)
+            key, word = keys[at]
+            keys[at] = (f"{key} {key}", word)
         first, last = keys[:-ALWAYS_SHOWN], keys[-ALWAYS_SHOWN:]
         width = self.size.width
         while first and sum(len(key) + len(word) + 3 for key, word in (*first, *last)) - 2 > width:

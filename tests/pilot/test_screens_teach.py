@@ -507,3 +507,23 @@ async def test_a_notice_stands_in_the_log_and_covers_nothing(
         assert any("Tangy is learning" in after[n] for n in changed)
         first = next(n for n, line in enumerate(after) if "still to show" in line)
         assert all(n < first for n in changed)
+
+
+async def test_the_foot_tells_how_often_escape_is_pressed_to_go_home(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(SMALL, app=program(workspace)) as pilot:
+        await pilot.press("tab")
+        await pilot.pause()
+        assert pilot.app.screen.query_one(CommandBar).lists
+        assert "esc esc home" in screen_text(pilot.app)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert not pilot.app.screen.query_one(CommandBar).lists
+        shown = screen_text(pilot.app)
+        assert "esc home" in shown
+        assert "esc esc" not in shown
+        await pilot.press("escape")
+        await pilot.pause()
+        assert not isinstance(pilot.app.screen, TeachScreen)

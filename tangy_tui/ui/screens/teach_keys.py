@@ -7,18 +7,19 @@ from textual.binding import Binding, BindingType
 from tangy_tui.text.teaching import CANCEL, CHOOSE_STEP, LEAVE
 from tangy_tui.text.tour import SKIP_TOUR, TOUR_ON
 from tangy_tui.ui.keys import bind
+from tangy_tui.ui.panels import HOME
 
-KEYS = ("undo", "redo", "why", "learn", "next", "shown", "again", "library", "back:home", "help")
-HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", "back:home", "help")
+KEYS = ("undo", "redo", "why", "learn", "shown", "next", "again", "library", HOME, "help")
+HEARING_KEYS = ("talk", "undo", "redo", "why", "learn", "next", "listen", HOME, "help")
 """The same with a microphone."""
 
 RULE_KEYS = (
     *("undo", "why", "rule", "shown", "learn", "next"),
-    *("redo", "again", "library", "back:home", "help"),
+    *("redo", "again", "library", HOME, "help"),
 )
 RULE_HEARING_KEYS = (
     *("talk", "undo", "why", "rule", "shown", "learn", "next"),
-    *("redo", "listen", "back:home", "help"),
+    *("redo", "listen", HOME, "help"),
 )
 """The same for an activity whose steps can become rules."""
 

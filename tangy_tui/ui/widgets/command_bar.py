@@ -177,7 +177,10 @@ class CommandInput(Input):
         self.put(self._draft if self._at == len(self.history) else self.history[self._at])
 
     def action_leave(self) -> None:
-        """Remove the focus from the line."""
+        """Close the list of commands, and remove the focus from the line."""
+        if self.listed:
+            self.forget_list()
+            self.put("")
         self.screen.set_focus(None)
 
 
