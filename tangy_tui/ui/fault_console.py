@@ -48,7 +48,7 @@ from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
 from tangy_tui.ui.keys import keymap_of
-from tangy_tui.ui.widgets.command_bar import CommandInput
+from tangy_tui.ui.widgets.command_input import CommandInput
 from tangy_tui.ui.widgets.fault_banner import ESC_SEEN, SEEN, FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.status_line import StatusLine

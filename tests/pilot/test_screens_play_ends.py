@@ -19,7 +19,7 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.policy import PolicyScreen
 from tangy_tui.ui.screens.question_panel import AskingPanel
-from tangy_tui.ui.widgets.command_bar import CommandInput
+from tangy_tui.ui.widgets.command_input import CommandInput
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript

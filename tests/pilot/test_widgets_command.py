@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from time import monotonic
 from typing import TYPE_CHECKING
 
 from textual.app import ComposeResult
@@ -9,11 +10,17 @@ from textual.widgets import Label
 
 from tangy_tui.text.teaching_commands import NOTHING_FITS
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.widgets.command_bar import LONGEST, CommandBar, CommandInput
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.command_input import LONGEST, CommandInput
 from tangy_tui.ui.widgets.command_matches import Complete
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
+
+
+def monotonic_later() -> float:
+    """Return a time after that of each key, so that no key comes late."""
+    return monotonic() + 60
 
 
 PHRASES = ("call number", "call a number", "call the next number", "celebrate", "greet everyone")
@@ -238,3 +245,29 @@ async def test_the_list_of_commands_closes_when_others_apply(run: Run) -> None:
         await pilot.pause()
         assert bar_of(pilot).text == ""
         assert "call number" not in pilot.text()
+
+
+async def test_a_lone_answer_right_after_a_returned_command_changes_nothing(run: Run) -> None:
+    screen = Bar()
+    async with run(screen, clock=monotonic_later) as pilot:
+        for key in ("y", "n", "Y"):
+            bar_of(pilot).restore("celebrate")
+            await pilot.press(key)
+            assert bar_of(pilot).text == "celebrate"
+        await pilot.press("enter")  # and the command is still there
+        await pilot.pause()
+        assert screen.given == ["celebrate"]
+
+
+async def test_a_command_that_begins_like_an_answer_keeps_its_letter(run: Run) -> None:
+    async with run(Bar(), clock=monotonic_later) as pilot:
+        bar_of(pilot).restore("celebrate")
+        await pilot.press(*"next")
+        assert bar_of(pilot).text == "next"
+
+
+async def test_a_later_answer_replaces_the_returned_command(run: Run) -> None:
+    async with run(Bar()) as pilot:  # its clock stands: the command came back long ago
+        bar_of(pilot).restore("celebrate")
+        await pilot.press("y")
+        assert bar_of(pilot).text == "y"
