@@ -4,8 +4,8 @@ Run by hand: `python -m tests.bench.lost_robots [--tries N] [--seed N]`. A robot
 the simulated room, without a pose, and drives from point to point with a scan each `--seconds`.
 With `TANGY_LASER_LOG` it also starts anywhere in the log of `tests.bench.localisation`, with scans
 `--metres` apart. It is followed until `LOOKS` scans after it first counted as found, or until it
-has gone `FAR`. With `--still` it only moves to and fro, by some 10 cm. It is wrong where it counts
-as found and is off by more than `OFF`.
+has gone `FAR`. With `--still` it only moves to and fro, by some 10 cm, with `--turning` it turns on
+the spot in the room. It is wrong where it counts as found and is off by more than `OFF`.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.navigation.localisation import Localisation
+from tangy_hw.navigation.navigator import SPIN
 from tangy_hw.navigation.occupancy import OccupancyMap, map_of_room
 from tangy_hw.navigation.poses import relative_pose
 from tangy_profiles.room import load_room
@@ -106,15 +107,15 @@ def drives(rng: np.random.Generator, seconds: float) -> Iterator[Moment]:
         wheels.turn(twist, 0.1)
 
 
-def to_and_fro(rng: np.random.Generator) -> Iterator[Moment]:
-    """Yield what a robot measures that hardly moves in the simulated room."""
+def staying(rng: np.random.Generator, there: Twist, back: Twist, dt: float) -> Iterator[Moment]:
+    """Yield what a robot measures that stays at one place in the room, and goes there and back."""
     sides, wheels = room_sides(ROOM), Wheels(rng)
     true = Pose(*(float(rng.uniform(*ends)) for ends in ((0.8, 9.2), (0.8, 4.2), (-pi, pi))))
     for number in range(STILL_LOOKS):
         yield Moment(wheels.pose, look(sides, true, rng), true)
-        twist = Twist(TO_AND_FRO if number % 2 else -TO_AND_FRO, 0.0)
-        true = driven(true, twist, 1.0)
-        wheels.turn(twist, 1.0)
+        twist = back if number % 2 else there
+        true = driven(true, twist, dt)
+        wheels.turn(twist, dt)
 
 
 def near_each_other(way: Sequence[Moment], first: int) -> list[Moment]:
@@ -129,6 +130,15 @@ def near_each_other(way: Sequence[Moment], first: int) -> list[Moment]:
     return []
 
 
+def turning(tries: int, seed: int) -> Outcome:
+    """Let robots turn on the spot in the simulated room, as they do to find their place."""
+    found, map_, twist = Outcome(), map_of_room(ROOM), Twist(0.0, SPIN)
+    for one in range(tries):
+        rng = np.random.default_rng([seed, one])
+        found.follow(Localisation(map_, rng), staying(rng, twist, twist, 0.2))
+    return found
+
+
 def still(folder: str | None, tries: int, seed: int) -> Outcome:
     """Let robots that hardly move find their place in the room, or in the building of a log."""
     found = Outcome()
@@ -139,7 +149,8 @@ def still(folder: str | None, tries: int, seed: int) -> Outcome:
             log = moments(logged(folder))[1::2]
             way = near_each_other(log, int(rng.integers(len(log) * 4 // 5)))
         else:
-            way = list(to_and_fro(rng))
+            step = Twist(TO_AND_FRO, 0.0), Twist(-TO_AND_FRO, 0.0)
+            way = list(staying(rng, *step, 1.0))
         if way:
             found.follow(Localisation(map_, rng), way)
     return found
@@ -172,7 +183,11 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, nargs="*", default=[0.1, 0.5, 1.0, 2.5])
     parser.add_argument("--metres", type=float, nargs="*", default=[0.1, 0.5, 1.0, 2.0])
     parser.add_argument("--still", action="store_true")
+    parser.add_argument("--turning", action="store_true")
     options = parser.parse_args()
+    if options.turning:
+        print(turning(options.tries, options.seed).row(), flush=True)
+        return
     if options.still:
         for place in (None, os.environ.get(FOLDER)):
             print(still(place, options.tries, options.seed).row(), flush=True)
