@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from typing import Protocol, runtime_checkable
 
-from tangy_profiles.state import ActivityState
+from tangy_profiles.declared.game import DeclaredGame
 
 
 @runtime_checkable
 class PresentMoment(Protocol):
-    """A world that knows the speech in progress, and the state that it leads to."""
+    """A world that knows the speech in progress, and where it leads."""
 
     saying: str
     """The speech of the behaviour in progress or of the last one, with people by their ids."""
 
-    @property
-    def moment(self) -> ActivityState:
-        """The joint state with the behaviour in progress, without a new observation."""
-        ...
+    ahead: DeclaredGame
+    """The game as it will be after the behaviour in progress, or else as it is."""
 
 
 def as_present(world: object) -> PresentMoment | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Sequence
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Collection, Iterable, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
@@ -68,15 +68,13 @@ class SpeechInput:
             SoundError: the source cannot be used.
         """
         self._source = open_source(source, stdin=stdin, folder=folder, spoken=spoken)
-        hands_free |= isinstance(self._source, SpokenRecording)
         self.live = self._source.live
         """Whether it is live speech, not a recording."""
-        self.hands_free = hands_free
+        self.hands_free = hands_free or isinstance(self._source, SpokenRecording)
         self.answers = answers
         self.meter = Meter()
         self.words = ""  # the partial result of the current utterance
-        self.sound = b""
-        """The last utterance, 16 kHz mono s16le."""
+        self.sound = b""  # the last utterance, 16 kHz mono s16le
         self.tell: Callable[[HearingNote], None] = lambda note: None
         """Called with a note for people."""
         self.changed: Callable[[], None] = lambda: None
@@ -95,6 +93,7 @@ class SpeechInput:
         self._shuts = 0  # how many callers have shut it and not opened it yet
         self._asking, self._choices = False, tuple[str, ...]()
         self.steering: tuple[Steering, ...] = ()  # accepted while commands are not
+        self.options: Callable[[], Collection[str]] = tuple  # of the question to people
         self._renew = False  # the vocabulary has changed
         self._noticed: set[HearingNote] = set()
         if recorder is not None:
@@ -374,8 +373,9 @@ class SpeechInput:
         if self._asking:
             people = self._phrasebook.table.answers if self.steering else {}
             heard, told = replied(
-                evidence, self._settings, self._choices, self.steering, people, answers=self.answers
-            )
+                evidence, self._settings, self._choices, self.steering,
+                people, self.options(), answers=self.answers,
+            )  # fmt: skip
         else:
             heard, told = commanded(evidence, self._phrasebook, self._settings, live=self.live)
         if told is not None:

@@ -220,6 +220,7 @@ def replied(
     choices: Sequence[str] = (),
     steering: Collection[Steering] = (),
     people: Mapping[str, str] = MappingProxyType({}),
+    options: Collection[str] = (),
     *,
     answers: bool,
 ) -> tuple[Reply | Say | StopCommand | None, HearingKind | None]:
@@ -227,11 +228,18 @@ def replied(
 
     Without `answers`, only stop commands and the requests in `steering` count. `choices` are the
     words of the alternatives, and `people` the possible answers of people in a game, by spoken
-    form.
+    form; `options` are those of the question that people are asked now.
+
+    Words that are hardly more than one of these options stop the robot by the rules alone: what
+    was learnt of stops takes short answers for them.
     """
     given = answered(evidence, settings, people) if answers else None
     if given is not None and given.confidence >= BOTH_HEARD:
         evidence = replace(evidence, stop="")  # both other decoders hear an answer
+    open_now = (said for said, text in people.items() if text in options)
+    offered = any(_is_hardly_more(evidence.words, said) for said in open_now)
+    if offered and not stops_by_rules(evidence.stop):
+        evidence = replace(evidence, stop="")
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):
         return Say(evidence.words, 1.0, None), None
@@ -240,6 +248,12 @@ def replied(
     none = answers and said is None and evidence.seconds
     told: HearingKind | None = "no answer" if none else None
     return (said if answers or isinstance(said, StopCommand) else None), told
+
+
+def _is_hardly_more(words: str, option: str) -> bool:
+    """Return whether words are an option, with at most one word beside it."""
+    beside = len(words.split()) - len(option.split())
+    return f" {option} " in f" {words} " and beside <= 1
 
 
 def answered(

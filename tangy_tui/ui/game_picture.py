@@ -7,6 +7,7 @@ from typing import Any
 
 from textual.screen import Screen
 
+from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.speech import with_names
 from tangy_profiles.game_records import CallMade, CallStage
 from tangy_profiles.present_moment import as_present
@@ -149,7 +150,7 @@ class GamePicture:
         """Update the status line: robot, stage and note."""
         now = as_present(self._supervision.world)
         if now is not None and self._game and not self._supervision.over:
-            self._stage = self._workspace.activity.in_words(now.moment.situation)
+            self._stage = self._workspace.activity.in_words(joint_state(now.ahead).situation)
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, self._workspace.activity),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Collection
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
@@ -155,15 +155,20 @@ class Hearing:
             self._understood = spoken
             self.ears.understand_by(spoken)
 
-    def steer_by(self, steer: Callable[[str, float], None] | None) -> None:
+    def steer_by(
+        self,
+        steer: Callable[[str, float], None] | None,
+        options: Callable[[], Collection[str]] = tuple,
+    ) -> None:
         """Route steering commands and their confidence to a callback while no screen listens.
 
-        None removes it.
+        None removes it. `options` returns the options of the question that people are asked.
         """
         from tangy_tui.language.steering import IN_GAMES
 
         self._steer = steer
         self.ears.steering = () if steer is None else IN_GAMES
+        self.ears.options = options
 
     def pause(self, paused: bool) -> None:
         """Pause or resume commands by voice."""
@@ -331,16 +336,21 @@ def hearing_of(app: object) -> Hearing | None:
 class HearingLine(MicrophoneLine):
     """The microphone line of a screen."""
 
-    def __init__(self, hearing: Hearing, steer: Callable[[str, float], None] | None = None) -> None:
-        """Create the line; `steer` takes steering commands while the screen takes no others."""
+    def __init__(
+        self,
+        hearing: Hearing,
+        steer: Callable[[str, float], None] | None = None,
+        options: Callable[[], Collection[str]] = tuple,
+    ) -> None:
+        """Create the line; see `Hearing.steer_by` for what it sets while it is shown."""
         super().__init__(hearing.ears, lambda: hearing.expects)
         self._hearing = hearing
-        self._steer = steer
+        self._steer, self._options = steer, options
 
     def on_mount(self) -> None:
         """Follow the recogniser, and the focus."""
         self._hearing.watch(self.look)
-        self._hearing.steer_by(self._steer)
+        self._hearing.steer_by(self._steer, self._options)
         self.watch(self.screen, "focused", self.look, init=False)
 
     def on_unmount(self) -> None:

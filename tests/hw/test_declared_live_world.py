@@ -118,7 +118,7 @@ def test_an_answer_counts_that_staff_report_while_the_question_is_spoken(
             row = world.ahead.row
             said = world.activity.declaration.items.value(row, "right")
             told = world.tell(None, said)
-            seen.append((world.saying, world.moment.stage, told is not None))
+            seen.append((world.saying, world.ahead.stage()[0].name, told is not None))
 
     link.meanwhile = answer
     do(world, "ask question", "user1")
@@ -136,7 +136,7 @@ def test_a_question_that_was_broken_off_is_not_open(
     do(world, "welcome everyone")
     link.breaks["perform"] = "stopped"
     do(world, "ask question", "user1")
-    assert world.moment.stage == "next"
+    assert world.ahead.stage()[0].name == "next"
     assert not world.tell(None, "the right one")
 
 

@@ -125,3 +125,22 @@ def test_the_vocabulary_includes_answers_but_no_single_letters() -> None:
     assert all(len(text) > 1 for text in options)
     assert set(options) <= set(wanted(trivia, USUAL).answers)
     assert Phrasebook(declared("exercises"), load_people(2)).table.answers == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "stop", "options", "stops"),
+    [
+        ("the dove move", "the dove move", ("the dove",), False),  # learnt stops know no doves
+        ("the crow", "the crow", ("the crow",), False),
+        ("the crow", "the crow", ("the dove",), True),  # that is not asked now
+        ("the crow", "the crow", (), True),  # no question is open
+        ("let go of the dove now", "let go of the dove now", ("the dove",), True),
+        ("stop the dove", "stop it", ("the dove",), True),  # clearly a stop
+    ],
+)
+def test_words_that_are_an_option_of_the_open_question_stop_by_the_rules_alone(
+    words: str, stop: str, options: tuple[str, ...], stops: bool
+) -> None:
+    evidence = AcousticEvidence(words, "", -0.3, 1.0, 1.0, stop)
+    said, _ = replied(evidence, USUAL, (), IN_GAMES, GIVEN, options, answers=True)
+    assert isinstance(said, StopCommand) is stops

@@ -156,11 +156,6 @@ class DeclaredLiveWorld(LiveWorld):
             self.requests.tell(self.tracker)
         return joint_state(self.game)
 
-    @property
-    def moment(self) -> ActivityState:
-        """The joint state with the behaviour in progress, as it is known now."""
-        return joint_state(self.ahead)
-
     def look_again(self) -> ActivityState:
         """Return the joint state a moment later: there is nothing to read again."""
         return self.observe()

@@ -68,18 +68,22 @@ def sayable(game: DeclaredGame) -> list[str]:
 
     The options are there while their question is open.
     """
-    found: list[str] = []
+    found = open_options(game)
     for fact in can_be_told(game):
-        if fact.checks and not is_open(game, fact):
-            continue
         if fact.checks:
-            items = game.declaration.items
-            found += [one for c in fact.options if (one := items.value(game.row, c))]
-        elif fact.kind == "choice":
+            continue
+        if fact.kind == "choice":
             found += fact.values[1:]
         else:
             found.append(fact.name)
     return found
+
+
+def open_options(game: DeclaredGame) -> list[str]:
+    """Return the options of the questions that are open, in the words of the items."""
+    asked = [fact for fact in can_be_told(game) if fact.checks and is_open(game, fact)]
+    items = game.declaration.items
+    return [one for fact in asked for c in fact.options if (one := items.value(game.row, c))]
 
 
 def is_open(game: DeclaredGame, fact: Fact) -> bool:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
+from tangy_profiles.declared.typed_observations import open_options
 from tangy_profiles.errors import TangyError
+from tangy_profiles.present_moment import as_present
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
@@ -74,6 +76,11 @@ class PlayPanels(TangyScreen[Tally]):
         """Handle a spoken steering command, or a person's answer (`sure`: likelihood)."""
         raise NotImplementedError
 
+    def _open_options(self) -> Sequence[str]:
+        """Return the options of the question that people are asked now."""
+        now = as_present(self._supervision.world)
+        return () if now is None else open_options(now.ahead)
+
     def _fail(self, reason: str) -> None:
         """Pause because an event could not be stored."""
         raise NotImplementedError
@@ -94,7 +101,7 @@ class PlayPanels(TangyScreen[Tally]):
                 yield panel(PolicyTable())
                 yield panel(Posteriors(world=self._supervision.world.played_in))
         if (hearing := hearing_of(self.app)) is not None:
-            yield HearingLine(hearing, self.steer)
+            yield HearingLine(hearing, self.steer, self._open_options)
         yield KeyLine(*keys(going=True))
 
     def action_panel(self, name: str) -> None:
