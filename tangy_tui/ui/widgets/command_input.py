@@ -112,7 +112,7 @@ class CommandInput(Input):
         """Put a command back, selected."""
         self.put(text)
         self.select_all()
-        self._returned = clock_of(self.app)()
+        self._returned, self._held = clock_of(self.app)(), ""
 
     def _on_paste(self, event: events.Paste) -> None:
         if not self.closed and event.text.strip():
