@@ -139,8 +139,7 @@ class LikelihoodField:
         """Return the index of each cell; the nearest one for those outside. Overwrites both."""
         rows, columns = self._field.shape
         for values, most in ((column, columns - 1), (row, rows - 1)):
-            np.maximum(values, 0, out=values)
-            np.minimum(values, most, out=values)
+            np.clip(values, 0, most, out=values)
         index = row.astype(np.int32)
         index *= np.int32(columns)
         index += column.astype(np.int32)
