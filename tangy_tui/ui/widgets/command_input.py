@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import ClassVar
 
 from textual import events
@@ -70,8 +69,9 @@ class CommandInput(Input):
         self._sayable = sayable
         self._listed: tuple[str, ...] = ()
         self._taken = -1  # the index of the listed command in the line
-        self._returned = -inf  # the time at which a command was put back
+        self._returned = False  # whether a command has been put back, and no key came since
         self._held = ""  # a y or n that was probably typed by reflex
+        self._since = 0.0  # the time of either, in s
 
     async def _on_key(self, event: events.Key) -> None:
         """Handle each key before the next one.
@@ -94,16 +94,15 @@ class CommandInput(Input):
             await super()._on_key(event)
 
     def _is_reflex(self, event: events.Key) -> bool:
-        """Hold a y or n back that comes with a returned command; a letter after it releases it."""
+        """Hold a y or n back that follows a returned command; a letter soon after releases it."""
         held, self._held = self._held, ""
-        if held and event.is_printable:
+        soon = event.time - self._since <= REFLEX_SECONDS
+        if held and soon and event.is_printable:
             self.replace(held, *self.selection)
-        whole = self.value and not self.selection.is_empty
-        soon = event.time - self._returned <= REFLEX_SECONDS
-        self._returned = -inf
-        if not (whole and soon and event.key in ("y", "n", "Y", "N")):
+        returned, self._returned = self._returned, False
+        if not (returned and soon and event.key in ("y", "n", "Y", "N")):
             return False
-        self._held = event.key
+        self._held, self._since = event.key, event.time
         event.stop()
         event.prevent_default()
         return True
@@ -112,7 +111,7 @@ class CommandInput(Input):
         """Put a command back, selected."""
         self.put(text)
         self.select_all()
-        self._returned, self._held = clock_of(self.app)(), ""
+        self._returned, self._held, self._since = True, "", clock_of(self.app)()
 
     def _on_paste(self, event: events.Paste) -> None:
         if not self.closed and event.text.strip():
