@@ -1,9 +1,9 @@
-"""Games of the activities that ship, on the bench: which end, what Tangy asks, and faults.
+"""How games of the shipped activities end on the bench, Tangy's questions, and diagnosed faults.
 
 Run by hand: `python -m tests.bench.activity_games [--seed N] [--games N] [--people N] [NAME...]`.
 NAME is an activity or its file. A scripted teacher shows each activity in two guided games. Then
-the policy learnt from them plays with simulated devices and with so many people, each game with a
-seed of its own. Nobody injects a fault: each fault in the table is a false alarm or a defect of the
+the learned policy plays with simulated devices and the given number of people; each game has its
+own seed. No fault is injected: each fault in the table is a false alarm or a defect of the
 bench. `asked` counts Tangy's questions to the teacher.
 """
 
@@ -22,7 +22,7 @@ from tangy_profiles.activity import shipped_activities
 from tests.support.terminal import TANGY
 
 PEOPLE = (1, 2, 4, 12)
-TAUGHT = 4  # people of the guided games
+TAUGHT = 4  # people in the guided games
 LONGEST = 3600.0  # s
 HEAD = ("activity", "people", "seed", "finished", "asked", "steps", "minutes", "faults")
 

@@ -1,8 +1,8 @@
-"""mabwiser beside the experiment's ways to choose, on the very draws of `tangy experiment 2`.
+"""mabwiser beside the experiment's selection methods, on the same draws as `tangy experiment 2`.
 
-Run by hand: `python tests/bench/algorithms.py [PEOPLE]` (needs the extra [bench]). Person i would
-answer strategy s at interaction t as in the experiment, whoever asks; the tables show mean regret
-with its standard error at 23, 60 and 300 interactions, and decisions a second.
+Run by hand: `python tests/bench/algorithms.py [PEOPLE]` (needs the extra [bench]). Each person's
+answer to strategy s at interaction t is fixed, for every method; the tables show mean regret
+with its standard error at 23, 60 and 300 interactions, and decisions per second.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ CROWD, STRATEGIES, SEED = "even", 4, 0
 
 
 def mabwiser_policies() -> dict[str, Callable[[int], Any]]:
-    """Return ways to make mabwiser's bandits, by name, from a seed."""
+    """Return factories of mabwiser's bandits by name; each takes a seed."""
     from mabwiser.mab import MAB, LearningPolicy
 
     arms = list(range(STRATEGIES))
@@ -39,7 +39,7 @@ def _bandit(mab: Any, arms: list[int], policy: Any, seed: int) -> Any:
 
 
 def met_by(make: Callable[[int], Any], person: int) -> list[float]:
-    """Let one of mabwiser's bandits meet a person; return the regret at each horizon."""
+    """Run one of mabwiser's bandits with a person; return the regret at each horizon."""
     crowd = CROWDS[CROWD]
     rates = crowd.rates(person, STRATEGIES, SEED)
     answers = Random(f"{SEED}/answers/{person}").random
@@ -48,7 +48,7 @@ def met_by(make: Callable[[int], Any], person: int) -> list[float]:
     for time in range(HORIZONS[-1]):
         chosen = (
             bandit.predict() if time else Random(person).randrange(STRATEGIES)
-        )  # it must be fitted first
+        )  # mabwiser must be fitted first
         would = [answers() for _ in range(STRATEGIES)]
         complied = int(would[chosen] < rates[chosen])
         (bandit.partial_fit if time else bandit.fit)([chosen], [complied])

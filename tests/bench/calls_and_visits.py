@@ -1,7 +1,7 @@
-"""Calls a minute and the longest wait of those who ask, by pace and number of people.
+"""Calls per minute and the longest wait for help, by pace and number of people.
 
 Run by hand: `python -m tests.bench.calls_and_visits [GAMES]`. Simulated games of at most 40 minutes
-for the full card are played by the activity's own table, with visits to people who do not ask.
+for the full card follow the activity's own table, with visits to people who do not ask.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_rules import GamePlan
 from tangy_sim.worlds.world import SimulatedWorld
 
-LONGEST = 2400.0  # s of a game
+LONGEST = 2400.0  # s, of a game
 PLAN = GamePlan(("full card",), visits=True)
 
 
 def played(activity: Activity, people: int, pace: float, seed: int) -> tuple[int, float, float]:
-    """Play a game; return how many numbers were called, and its s and the longest wait in s."""
+    """Play a game; return the number of calls, its duration and the longest wait, in s."""
     world = SimulatedWorld(activity, [f"u{number}" for number in range(people)], seed=seed)
     world.choose(replace(PLAN, pace=pace))
     world.begin()
@@ -42,7 +42,7 @@ def played(activity: Activity, people: int, pace: float, seed: int) -> tuple[int
 
 
 def main(games: int = 10) -> None:
-    """Print the table, with the rule of calls that come first and without it."""
+    """Print the table with and without the rule that calls come first."""
     with_rule = load_activity("bingo")
     without = replace(with_rule, rules=replace(with_rule.rules, calls_first=None))
     print(f"{games} games each; calls a minute, longest wait in s; without the rule in brackets")

@@ -1,8 +1,8 @@
-"""How soon a camera's trouble is named, and its end: over real processes and a loopback stream.
+"""Delay until camera trouble, and its end, is reported: real processes, a loopback stream.
 
 Run by hand: `python -m tests.bench.camera_latency [--rounds N]`. An MJPEG server (see
 `tests.real.camera_server`) is live, freezes, is covered, hangs, breaks off, is unplugged, and comes
-back; its camera's process is stopped and killed. Each is to be named, and its end, within 2 s.
+back; the camera's process is stopped and killed. Each must be reported, and its end, within 2 s.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ TROUBLE: dict[str, State] = {
 
 
 async def until(camera: Camera, state: State) -> float:
-    """Return how long it takes, in s, until a camera is in a state."""
+    """Return the time in s until a camera reaches a state."""
     began = time.monotonic()
     while camera.sight.state != state:
         await asyncio.sleep(0.01)
@@ -45,7 +45,7 @@ async def until(camera: Camera, state: State) -> float:
 
 
 async def measure(rounds: int, lasts: float) -> None:
-    """Print the table; each trouble lasts so long after it was named."""
+    """Print the table; each trouble lasts this long after it was reported."""
     rng = random.Random(1)
     print("                named s   (longest)   over s   (longest)")
     with CameraServer() as server:

@@ -1,11 +1,11 @@
-"""What state a camera is said to be in: of single pictures, and over ten minutes of live video.
+"""Camera states reported for single pictures, and during ten minutes of live video.
 
-Run by hand: `python -m tests.bench.cameras [--tune] [--minutes N]`. Rooms are made up (see
-`tests.hw.pictures`), photographs are the two that scikit-learn ships; each is seen in good and bad
+Run by hand: `python -m tests.bench.cameras [--tune] [--minutes N]`. Rooms are drawn (see
+`tests.hw.pictures`), the two photographs ship with scikit-learn; each is seen in good and bad
 light, noisy, compressed, moved, blurred, dark and covered. The limits of `camera_state` were set
-looking at `--tune`; what is quoted are rooms of other seeds, and the other photograph. The video
-is measured picture by picture on a clock of its own: slow pans, a still room, lights that are
-dimmed and come back; any state but OK in it is a false alarm.
+with `--tune`; quoted figures use rooms of other seeds and the other photograph. The video is
+measured picture by picture on its own clock: slow pans, a still room, lights that are dimmed
+and come back; any state but OK is a false alarm.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tests.hw.pictures import Image, room, seen
 
 TUNED, QUOTED = range(20), range(5_000, 5_040)
 PHOTOS = {"tuned": 0, "quoted": 1}
-RATE = 10  # looks a second
+RATE = 10  # pictures per second
 
 WELL: dict[str, dict[str, float]] = {
     "good light": {},
@@ -46,20 +46,20 @@ ILL: dict[str, tuple[str, dict[str, float]]] = {
 
 
 def judged(image: Image) -> Sight:
-    """Return what is said of one picture by itself."""
+    """Return the state of one picture by itself."""
     watch = CameraWatch(0.0, each=True)
     watch.saw(measure(image, 0, 0.0))
     return watch.at(0.0)
 
 
 def moved(image: Image, pixels: int) -> Image:
-    """Return a picture smeared by a movement while it was taken."""
+    """Return a picture smeared by movement during the exposure."""
     kernel = np.full((1, pixels), 1 / pixels, np.float32)
     return np.asarray(cv2.filter2D(image, -1, kernel), np.uint8)
 
 
 def table(pictures: list[Image]) -> None:
-    """Print how many pictures of each kind are called what."""
+    """Print how many pictures of each kind get each state."""
     print(f"{'':22}{'is':>9}{'named so':>10}   sharpness        brightness   contrast")
     kinds = [(name, "OK", how) for name, how in WELL.items()]
     kinds += [(name, state, how) for name, (state, how) in ILL.items()]

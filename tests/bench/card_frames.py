@@ -1,6 +1,6 @@
 """Write rendered frames of cards as pictures, with labels.json beside them.
 
-Run by hand: `python -m tests.bench.card_frames DIR --frames 20 --seed 3`, to look at, or to count
+Run by hand: `python -m tests.bench.card_frames DIR --frames 20 --seed 3`, to look at them, or count
 with `tangy read-card --bench DIR`.
 """
 

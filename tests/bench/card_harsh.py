@@ -1,10 +1,10 @@
-"""Frames of cards in harsh light, moved, and with fingertips: what no classifier was trained on.
+"""Frames of cards in harsh light, moved, and with fingertips: conditions outside the training set.
 
 Run by hand: `python -m tests.bench.card_harsh --frames 60` prints a table, a line for each trouble;
-`--set chosen` counts on the frames on which thresholds may be chosen, `--set quoted` (the usual) on
-those that figures are quoted of: these have other skins, hues and stripes, not other seeds alone.
-`--marks` says with what cards are marked: chips of a colour, chips and coins without, crosses of a
-pen, or nothing. `--draw DIR` writes the frames that were misread.
+`--set chosen` counts the frames on which thresholds may be chosen, `--set quoted` (the default)
+those for quoted figures: these differ in skins, hues and stripes, not in seeds alone.
+`--marks` chooses the marks on cards: coloured chips, colourless chips and coins, pen crosses,
+or nothing. `--draw DIR` writes the frames that were misread.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from tests.bench.cards import HEAD, Bench, Count, timed
 Picture: TypeAlias = NDArray[Any]
 Random: TypeAlias = np.random.Generator
 
-SCALE, EDGE = 4.0, 60.0  # pixels to a mm, and mm around the card, of what is laid on it
-COVERED = 0.42  # of a cell to each side of its middle: where a fingertip counts as on it
+SCALE, EDGE = 4.0, 60.0  # pixels per mm, and mm around the card, of layers on the card
+COVERED = 0.42  # of a cell to each side of its middle: a fingertip here counts as on the cell
 
 
 @dataclass(frozen=True)
 class Palette:
-    """What a set of frames is made with: hues of chips, skins (red, green, blue), stripes in mm."""
+    """The parts of a set of frames: hues of chips, skins (red, green, blue), stripes in mm."""
 
     seed: int
     hues: tuple[float, ...]
@@ -66,7 +66,7 @@ QUOTED = Palette(
 
 
 def coloured(palette: Palette, random: Random) -> Chip:
-    """Draw a kind of chip of a plain strong colour, some of them clear."""
+    """Draw a kind of chip of a plain strong colour; some kinds are clear."""
     hue = float(random.choice(palette.hues)) + random.normal(0, 3)
     tone = tone_of(hue, random.uniform(0.55, 1.0), random.uniform(0.45, 1.0))
     clear = float(random.uniform(0.15, 0.5)) if random.random() < 0.3 else 0.0
@@ -76,7 +76,7 @@ def coloured(palette: Palette, random: Random) -> Chip:
 
 
 def colourless(_: Palette, random: Random) -> Chip:
-    """Draw a kind of chip without a colour: white, grey and black ones, and coins."""
+    """Draw a kind of colourless chip: white, grey and black ones, and coins."""
     grey = float(random.choice([0.06, 0.2, 0.4, 0.6, 0.8]))
     if random.random() < 0.35:
         tone = tone_of(random.uniform(20, 48), random.uniform(0.0, 0.5), random.uniform(0.4, 0.85))
@@ -92,7 +92,7 @@ MARKS = (*CHIPS, PEN, NOTHING)
 
 @dataclass(frozen=True)
 class Trouble:
-    """What makes a frame harsh: which of these there are in it."""
+    """The conditions that make a frame harsh."""
 
     name: str
     blinds: bool = False
@@ -123,13 +123,13 @@ class HarshCamera:
         self.marks = marks
 
     def frames(self, trouble: Trouble, count: int) -> Iterator[RenderedFrame]:
-        """Yield so many frames."""
+        """Yield the given number of frames."""
         at = next(n for n, one in enumerate(TROUBLES) if one.name == trouble.name)
         for number in range(count):
             yield self.frame(trouble, np.random.default_rng([self.palette.seed, at, number]))
 
     def frame(self, trouble: Trouble, random: Random) -> RenderedFrame:
-        """Take a frame: a card in good light first, and then what befalls it."""
+        """Take a frame: render a card in good light, then apply the trouble."""
         size = (1280, 720) if random.random() < 0.5 else (900, 700)
         view = View(
             pixels=float(random.uniform(20, 42)),
@@ -179,7 +179,7 @@ class HarshCamera:
         }
 
     def _crosses(self, lit: Picture, plane: Picture, random: Random) -> tuple[Picture, int]:
-        """Cross some cells out with a pen; return the picture and which, as a mask."""
+        """Cross some cells out with a pen; return the picture and a mask of these cells."""
         face, layer, marked = self.camera.face, _blank(), 0
         ink = random.choice([0, 1, 2], p=[0.6, 0.25, 0.15])
         tone = np.array([[0.08, 0.08, 0.08], [0.55, 0.15, 0.1], [0.12, 0.1, 0.7]][ink])
@@ -208,7 +208,7 @@ class HarshCamera:
         return np.asarray(dark + (1 - dark) * lit, np.float32)
 
     def _fingers(self, lit: Picture, plane: Picture, random: Random) -> tuple[Picture, Picture]:
-        """Lay one to three fingers on the card; return the picture and what they cover of cells."""
+        """Lay one to three fingers on the card; return it and the covered share of each cell."""
         face, layer = self.camera.face, _blank()
         red, green, blue = self.palette.skins[random.integers(len(self.palette.skins))]
         skin = np.array([blue, green, red]) / 255
@@ -222,7 +222,7 @@ class HarshCamera:
         for finger in range(int(random.integers(1, 4))):
             tip = np.array([x, y]) + aside * finger * 2.1 * thick - along * random.uniform(-12, 12)
             _finger(layer, tip, along, thick, skin, random)
-        if random.random() < 0.5:  # a sleeve begins not far from the tips
+        if random.random() < 0.5:  # a sleeve begins near the tips
             begins = np.array([x, y]) + along * random.uniform(35, 70) + aside * thick * 2
             cloth = np.array(tone_of(random.uniform(0, 360), random.random(), random.random()))
             _limb(layer, begins, begins + along * 400, 26, cloth)
@@ -230,13 +230,13 @@ class HarshCamera:
 
 
 def _blank() -> Picture:
-    """Return an empty layer on the card and around it: blue, green, red, and how much is there."""
+    """Return an empty layer on the card and around it: blue, green, red, and opacity."""
     across, down = (round((side + 2 * EDGE) * SCALE) for side in (WIDTH, HEIGHT))
     return np.zeros((down, across, 4), np.float32)
 
 
 def _laid(lit: Picture, layer: Picture, plane: Picture, shadow: float) -> Picture:
-    """Lay a layer on the card, with so much of a shadow around what is on it."""
+    """Lay a layer on the card, with a shadow of this strength around it."""
     to_mm = np.array([[1 / SCALE, 0, -EDGE], [0, 1 / SCALE, -EDGE], [0, 0, 1]])
     height, width = lit.shape[:2]
     laid = cv2.warpPerspective(layer, plane @ to_mm, (width, height), flags=cv2.INTER_AREA)
@@ -246,7 +246,7 @@ def _laid(lit: Picture, layer: Picture, plane: Picture, shadow: float) -> Pictur
 
 
 def _plane(face: CardLayout, frame: RenderedFrame) -> Picture:
-    """Return what takes mm on the card to pixels, from the corners of the grid."""
+    """Return the transform from mm on the card to pixels, by the corners of the grid."""
     g = face.grid
     ends = [(g.left, g.top), (g.right, g.top), (g.right, g.bottom), (g.left, g.bottom)]
     here, there = np.array(ends, np.float32), np.array(frame.corners, np.float32)
@@ -275,7 +275,7 @@ def _finger(
 
 
 def _shares(face: CardLayout, mask: Picture) -> Picture:
-    """Return how much of each cell something lies on."""
+    """Return how much of each cell a layer covers."""
     half, found = face.cell * COVERED, []
     for cell in range(face.deck.rows * len(face.deck.columns)):
         x, y = face.middle(cell)
@@ -286,7 +286,7 @@ def _shares(face: CardLayout, mask: Picture) -> Picture:
 
 
 def _smeared(lit: Picture, length: float, random: Random) -> Picture:
-    """Smear a picture over so many pixels in one direction."""
+    """Smear a picture over a number of pixels in one direction."""
     way, half = random.uniform(0, np.pi), int(np.ceil(length / 2)) + 1
     kernel = np.zeros((2 * half + 1, 2 * half + 1), np.float32)
     for step in np.linspace(-length / 2, length / 2, 64):

@@ -1,6 +1,6 @@
-"""Frames that the classifier of card cells is trained on: as rooms have them, and of what is hard.
+"""Training frames for the classifier of card cells: typical rooms, and difficult scenes.
 
-Their seeds are their own: the bench of cards quotes its figures on others.
+Their seeds are reserved for training: the bench of cards quotes its figures on others.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from tests.bench.cards import Bench
 Real: TypeAlias = NDArray[Any]
 
 TIPS = ("finger", "finger", "finger", "bar", "thumb", "blob", "flat")
-TIP, MOST_TIP = 0.12, 3  # of a cell that a tip covers, of so many cells at most
+TIP, MOST_TIP = 0.12, 3  # of a cell that a tip covers, of at most this many cells
 LYING = ("blob", "bar", "blob", "thing", "blob", "bar", "flat", "thumb")
 MOST_LYING = 9  # cells
-STEEP = (44.0, 64.0)  # degrees, of one frame in so many:
+STEEP = (44.0, 64.0)  # degrees, of one frame in this many:
 ONE_STEEP = 3
 SMALL = (660, 540)
 ROOMS = (101_000, 102_000, 103_000, 104_000)
 
 
 def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
-    """Yield frames as rooms have them, and more of what is hard: steep, dark, behind hands."""
+    """Yield frames of typical rooms, and more of difficult scenes: steep, dark, behind hands."""
     yield from camera.frames(seed, frames * 6 // 10, size=SMALL)
     hard: list[dict[str, Any]] = [
         *({"tilt": tilt} for tilt in (52.0, 56.0, 60.0, 64.0)),
@@ -57,7 +57,7 @@ def faint_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Rendere
 
 
 def odd_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
-    """Yield frames of things that lie on cards in the place of chips."""
+    """Yield frames of other objects on cards in the place of chips."""
     hard: list[dict[str, Any]] = [
         {}, {}, {}, {}, {"glare": 0.35}, {"glare": 0.7}, {"hand": "finger"}, {"hand": "blob"},
     ]  # fmt: skip
@@ -66,18 +66,18 @@ def odd_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedF
 
 
 def room_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
-    """Yield frames as rooms have them, those of the bench."""
+    """Yield the bench's frames of typical rooms."""
     yield from camera.frames(seed, frames)
 
 
 def scene_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
-    """Yield frames of the bench's scenes, five of each."""
+    """Yield five frames of each of the bench's scenes."""
     for scene in Bench(load_activity("bingo"), camera).scenes(seed, frames // 5, 5):
         yield from scene
 
 
 def tip_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
-    """Yield frames in which just the tip of a hand is on the grid: it looks like a chip."""
+    """Yield frames with only the tip of a hand on the grid: it looks like a chip."""
 
     def tried() -> Iterator[RenderedFrame]:
         for number in count():
@@ -102,7 +102,7 @@ def line_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Rendered
 
 
 def lying_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
-    """Yield frames on which something ends that is larger than a chip: fists, arms and things."""
+    """Yield frames with the end of something larger than a chip: fists, arms and objects."""
 
     def tried() -> Iterator[RenderedFrame]:
         for number in count():
@@ -118,11 +118,11 @@ def lying_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Rendere
 
 
 class NoTip(Exception):
-    """What lies on a card is no tip."""
+    """The object on a card is no tip."""
 
 
 class TipCamera(CardCamera):
-    """Takes frames only of hands that cover a cell or few."""
+    """Takes only frames of hands that cover few cells."""
 
     most = MOST_TIP
 
@@ -134,14 +134,14 @@ class TipCamera(CardCamera):
 
 
 class LyingCamera(TipCamera):
-    """Takes frames only of things that leave most of the card in sight."""
+    """Takes only frames of objects that leave most of the card in sight."""
 
     most = MOST_LYING
 
 
 @dataclass(frozen=True)
 class Kind:
-    """Frames of one kind: how they are made, and how many from which seeds."""
+    """Frames of one kind: how they are made, how many, and their seeds."""
 
     frames: Callable[[CardCamera, int, int], Iterator[RenderedFrame]]
     straddling: float
@@ -153,7 +153,7 @@ class Kind:
     taken: type[CardCamera] = CardCamera
 
     def camera(self) -> CardCamera:
-        """Return what takes them."""
+        """Return the camera that takes them."""
         deck = load_activity("bingo").deck
         return self.taken(
             deck,

@@ -1,4 +1,4 @@
-"""Fits the small nets of card cells: Adam, cross entropy with soft classes, and turned cells."""
+"""Fits the small nets of card cells: Adam, cross entropy with soft classes, and rotated cells."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Real: TypeAlias = NDArray[Any]
 Layers: TypeAlias = "list[list[Real]]"
 
 BATCH = 256
-POOL = 4_000_000  # drawn numbers, of which each step uses some others
+POOL = 4_000_000  # random numbers in a pool; each step uses a different part
 
 
 @dataclass(frozen=True)
 class Plan:
     """How nets are fitted.
 
-    `decay` is of the weights in a step's speed; `lost` of the features are left out; `noise`, of a
-    spread, is on each. Cells are seen `turning`, or as they are.
+    `decay` is the decay of weights, in proportion to the step size; `lost` is the share of features
+    left out; `noise`, in spreads, is added to each. With `turning`, cells are rotated.
     """
 
     widths: tuple[int, ...]
@@ -40,9 +40,9 @@ AMONG = Plan((32,), 8, 1e-3, 1e-3, 0.05, 0.05, turning=False)
 
 
 def fit(scaled: Real, wanted: Real, seed: int, plan: Plan, known: Real | None = None) -> Net:
-    """Fit one net; `wanted` is how much each row belongs to each class.
+    """Fit one net; `wanted` is the share of each class in each row.
 
-    `known` are logarithms of probabilities that the net corrects.
+    `known` are log probabilities that the net corrects.
     """
     random = np.random.default_rng(seed)
     sizes = [scaled.shape[1], *plan.widths, wanted.shape[1]]
@@ -87,7 +87,7 @@ def fit(scaled: Real, wanted: Real, seed: int, plan: Plan, known: Real | None = 
 
 
 def _slopes(layers: Layers, x: Real, wanted: Real, known: Real | None) -> Layers:
-    """Return how the cross entropy changes with each weight."""
+    """Return the gradient of the cross entropy by the weights."""
     inside = [x]
     for place, (weights, bias) in enumerate(layers):
         x = x @ weights + bias

@@ -1,12 +1,12 @@
-"""Train the classifier of card cells, from frames that are rendered here.
+"""Train the classifier of card cells on frames that this bench renders.
 
 Run by hand: `python -m tests.bench.card_training` writes
 `hw/tangy_hw/perception/cards/classifier.json`, in about an hour on one core. The seeds
-of its frames are its own: the bench of cards quotes its figures on others. `--keep DIR` keeps what
-was measured, to train again from it. Fewer than 100 frames are too few.
+of its frames are reserved for training: the bench of cards quotes its figures on others. `--keep
+DIR` keeps the measurements, to train again from them. Fewer than 100 frames are too few.
 
-The frames are learnt from in two halves: nets of one half say what cells of the other are, and from
-that, which is as unsure as it will be on new cards, those nets learn that look at whole cards.
+Training uses two halves: nets of one half predict the cells of the other. These predictions are as
+uncertain as predictions on new cards will be. The nets that look at whole cards learn from them.
 """
 
 from __future__ import annotations
@@ -49,18 +49,18 @@ from tests.bench.card_nets import ALONE, AMONG, fit
 Real: TypeAlias = NDArray[Any]
 Whole: TypeAlias = NDArray[np.int64]
 
-CLEAR, COVERED = 0.10, 0.45  # of a cell under a hand: it counts as seen, as hidden
-NETS, AMONG_NETS = 2, 3  # nets of each half; of all that look at whole cards
-ACROSS = 5  # columns of the cards that are learnt from
-SURE = 0.965  # of the cards of seed 102000, unless they are learnt, 90 % are told whole with it
-DOUBT = (0.35, 0.012, 0.025)  # how probably hidden a cell may be that is told; see `Classifier`
+CLEAR, COVERED = 0.10, 0.45  # of a cell under a hand: the limits to count as seen, as hidden
+NETS, AMONG_NETS = 2, 3  # nets of each half; and of the nets that look at whole cards
+ACROSS = 5  # columns of the training cards
+SURE = 0.965  # with it, 90 % of the cards of seed 102000 outside training are reported whole
+DOUBT = (0.35, 0.012, 0.025)  # the limits of P(hidden) for a reported cell; see `Classifier`
 
 
 @dataclass(frozen=True)
 class Cells:
-    """What was measured of the cells of cards, and what is true of them: cards, cells, values.
+    """Measurements and truth of the cells of cards, by card, cell and value.
 
-    `belongs` is how much each is of each class, `marks` whether there is really a chip on it;
+    `belongs` is the share of each class, `marks` whether there is really a chip on the cell;
     `beside` is that of `Measured`.
     """
 
@@ -71,7 +71,7 @@ class Cells:
 
     @staticmethod
     def of(parts: list[Cells]) -> Cells:
-        """Put several together."""
+        """Concatenate several."""
         return Cells(
             *(np.concatenate([getattr(part, name) for part in parts]) for name in MEASURED)
         )
@@ -97,7 +97,7 @@ def measured(frames: Iterable[RenderedFrame], camera: CardCamera) -> Iterator[Ce
 
 
 def belonging(mark: int, covered: float) -> list[float]:
-    """Say how much a cell belongs to each class: one that is half covered belongs to two."""
+    """Return a cell's share of each class: a half covered cell belongs to two."""
     hidden = min(1.0, max(0.0, (covered - CLEAR) / (COVERED - CLEAR)))
     part = [0.0, 0.0, hidden]
     part[MARKED if mark else UNMARKED] = 1 - hidden
@@ -105,7 +105,7 @@ def belonging(mark: int, covered: float) -> list[float]:
 
 
 def all_cells(part: float, keep: Path | None, *, learnt: bool) -> Cells:
-    """Render what is learnt from, or what is chosen on; or load what was kept."""
+    """Render or load the frames of training, or of the choice of limits."""
     kept = None if keep is None else keep / f"{'learnt' if learnt else 'chosen'}.npz"
     if kept is not None and kept.exists():
         stored = np.load(kept)
@@ -141,7 +141,7 @@ def main() -> None:
 
 
 def train(learnt: Cells) -> Classifier:
-    """Fit the nets to what is learnt from."""
+    """Fit the nets to the training cells."""
     centre, spread = (
         np.mean([values[turned(turn)] for turn in range(TURNS)], 0) for values in usual(learnt.rows)
     )
@@ -174,12 +174,12 @@ def usual(rows: Real) -> tuple[Real, Real]:
 
 
 def joined(values: Real) -> Real:
-    """Put the cells of all cards under each other."""
+    """Stack the cells of all cards."""
     return values.reshape(-1, values.shape[-1])
 
 
 def chosen_temperature(fitted: Classifier, chosen: Cells) -> float:
-    """Choose the temperature on these cells, and print how well they are told with it."""
+    """Choose the temperature on these cells, and print how well they are read with it."""
     scaled = fitted.alone.scaled(chosen.rows)
     first = seen_alone(fitted.alone.nets, joined(scaled)).reshape(chosen.belongs.shape)
     rows = joined(fitted.among.scaled(context_rows(first, scaled, chosen.beside, ACROSS)))
@@ -214,7 +214,7 @@ def chosen_temperature(fitted: Classifier, chosen: Cells) -> float:
 
 
 def document_of(fitted: Classifier) -> dict[str, Any]:
-    """Return all of a classifier as JSON has it."""
+    """Return a whole classifier as JSON stores it."""
     return {
         "features": list(NAMES),
         "seen": list(SEEN),
@@ -230,7 +230,7 @@ def document_of(fitted: Classifier) -> dict[str, Any]:
 
 
 def nets_of(told: shipped.NetEnsemble) -> dict[str, Any]:
-    """Return nets as JSON has them."""
+    """Return nets as JSON stores them."""
     return {
         "centre": rounded(told.centre, 4),
         "spread": rounded(told.spread, 4),
@@ -242,7 +242,7 @@ def nets_of(told: shipped.NetEnsemble) -> dict[str, Any]:
 
 
 def rounded(values: Real, places: int) -> Any:
-    """Return numbers as JSON has them, with so many figures after the point."""
+    """Return numbers as JSON stores them, with this many digits after the point."""
     return np.round(values.astype(float), places).tolist()
 
 

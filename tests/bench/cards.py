@@ -1,9 +1,9 @@
-"""How well printed cards are read, on rendered frames whose truth is known.
+"""How well printed cards are read, on rendered frames with known truth.
 
 Run by hand: `python -m tests.bench.cards --frames 1000` prints a table of each kind of frame;
-`--method paper` puts the paper's design beside it on the same frames (they are fewer by `--paper`).
-The seeds are others than those that `card_training` uses. A rendered frame is no photograph: take
-differences seriously, not the last per cent, and count on your own with `tangy read-card --bench`.
+`--method paper` adds the paper's design on the same frames (fewer of them, by `--paper`).
+The seeds differ from those of `card_training`. A rendered frame is no photograph: take
+differences seriously, not the last per cent, and count your own with `tangy read-card --bench`.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from tangy_profiles.cards import judge, judge_partly
 from tangy_sim.rendering.card_backgrounds import background
 from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame, some_view
 
-QUOTED = 150_000  # seed; nothing was chosen on its frames
+QUOTED = 150_000  # seed; no parameter was chosen on its frames
 Picture: TypeAlias = NDArray[Any]
 Read = Callable[[Picture], CardReading]
 
 
 @dataclass
 class Count:
-    """What came of frames of one kind."""
+    """The results of frames of one kind."""
 
     frames: int = 0
     claimed: int = 0
@@ -46,7 +46,7 @@ class Count:
     worst: list[str] = field(default_factory=list)
 
     def line(self, name: str) -> str:
-        """Write it as a row of the table."""
+        """Return a row of the table."""
         frames = max(1, self.frames)
         cpu = f"{np.median(self.seconds) * 1e3:4.0f} {np.percentile(self.seconds, 95) * 1e3:4.0f}"
         return (
@@ -73,7 +73,7 @@ class Bench:
         self.camera = camera or CardCamera(activity.deck, title=activity.title)
 
     def called(self, frame: RenderedFrame, random: np.random.Generator) -> set[int]:
-        """Draw what was called so that every user state comes up."""
+        """Draw the called numbers so that every user state occurs."""
         numbers = numbers_of(self.deck, frame.card or 1)
         marked = [n for cell, n in enumerate(numbers) if frame.marked >> cell & 1]
         others = [n for n in self.deck.numbers if n not in numbers]
@@ -87,7 +87,7 @@ class Bench:
         return called
 
     def judged(self, frame: RenderedFrame, called: set[int]) -> tuple[str, bool]:
-        """Return the true state, and whether it can be told in spite of the hand."""
+        """Return the true state, and whether the hand leaves enough in sight to tell it."""
         numbers = numbers_of(self.deck, frame.card or 1)
         cells = called_cells(self.deck, numbers, called)
         states = self.activity.user_states
@@ -123,7 +123,7 @@ class Bench:
         into.needless += tellable and state == unread
 
     def scenes(self, seed: int, count: int, frames: int) -> Iterator[list[RenderedFrame]]:
-        """Yield scenes: the same card and chips from nearly the same place, a hand that moves."""
+        """Yield scenes: the same card and chips from nearly the same place, with a moving hand."""
         for number in range(count):
             random = np.random.default_rng([seed, number])
             view = some_view(random, pixels=24.0 + 20 * random.random())

@@ -1,8 +1,8 @@
-"""How late the loop that drives gets while strangers hold half-sent requests to the chest screen.
+"""Delay of the driving loop while strangers hold half-sent requests to the chest screen.
 
 `python tests/bench/chest_screen.py [CONNECTIONS]`: a loop like the robot's ticks twenty times a
-second beside a chest screen; strangers in a process of their own send halves of requests, first
-none, then as many as asked for, then as fast as they can.
+second beside a chest screen; strangers in another process send halves of requests, first
+none, then CONNECTIONS, then as fast as they can.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ while True:
 
 
 async def ticks() -> list[float]:
-    """Tick, and return how late each was, in ms."""
+    """Tick, and return how late each tick was, in ms."""
     late = []
     due = time.monotonic() + TICK_SECONDS
     for _ in range(TICKS):
@@ -51,7 +51,7 @@ async def ticks() -> list[float]:
 
 
 def files() -> str:
-    """Say how many files this process has open."""
+    """Return the number of files this process has open."""
     try:
         return f"{sum(1 for _ in Path('/proc/self/fd').iterdir()):8}"
     except OSError:
@@ -59,7 +59,7 @@ def files() -> str:
 
 
 async def measure(most: int, *, churn: bool) -> None:
-    """Measure beside so many strangers, and print a row."""
+    """Measure beside this many strangers, and print a row."""
     screen = WebChestScreen(port=0)
     await screen.start()
     strangers = None
@@ -82,7 +82,7 @@ async def measure(most: int, *, churn: bool) -> None:
 
 
 async def run() -> None:
-    """Measure one after the other."""
+    """Run the measurements in turn."""
     most = int(sys.argv[1]) if sys.argv[1:] else 1100
     print("strangers       p50     p99     max   files open (times in ms)")
     await measure(0, churn=False)

@@ -3,7 +3,7 @@
 Run by hand: `python -m tests.bench.decision_times [ACTIVITY ...] [--games 3]`. A scripted teacher
 shows a guided game to a group of each size; then simulated games are played under monitoring. The
 decision is everything that a step computes before it carries out its behaviour: state, policy,
-whom it is for, persuasion. The step adds log, beliefs and monitoring. Times are the processor's.
+addressee, persuasion. The step adds log, beliefs and monitoring. Times are processor times.
 """
 
 from __future__ import annotations

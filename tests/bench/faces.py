@@ -1,16 +1,16 @@
-"""How well people are known by their faces, in a folder of pictures that is not part of this tree.
+"""How well faces are recognised, in a folder of pictures that is not part of this tree.
 
 Run by hand: `python -m tests.bench.faces DIR [--widths 200 80] [--draws 50] [--half 1|2]`, where
 DIR has a folder for each person. In each draw four people are enrolled with ten pictures each;
-their other pictures, and all pictures of everybody else, are asked about, one by one. People with
-fewer than 15 pictures are always strangers. `--half` takes every second person: what features and
-limits were chosen on is the first half, and the second half had no say.
+their other pictures, and all pictures of everybody else, are classified, one by one. People with
+fewer than 15 pictures are always strangers. `--half` takes every second person: features and
+limits were chosen on the first half only.
 
 `seen`: pictures in which a face passes the gate. Of those: `right at 1%`: of the enrolled, with
 the threshold at which one stranger in a hundred is accepted; then, with the threshold that the
-enrolment itself sets, `right`, `confused` (taken for somebody else) and `strangers` accepted.
-`all` is right of all pictures of the enrolled, with the gate against it. `vote`: right and
-strangers when three of a person's pictures vote. CPU is of one thread, for a picture.
+enrolment itself sets, `right`, `confused` (taken for another person) and `strangers` accepted.
+`all` is the share of right ones among all pictures of the enrolled, gate included. `vote`: right
+and strangers when three of a person's pictures vote. CPU is of one thread, per picture.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def chosen(folder: Path, half: int | None) -> dict[str, list[Path]]:
-    """Return the pictures of everybody, or of every second person, those with many apart."""
+    """Return everybody's pictures, or every second person's; who has many is halved apart."""
     there = {
         one.name: sorted(path for path in one.iterdir() if path.is_file())
         for one in sorted(folder.iterdir())
@@ -92,7 +92,7 @@ def draw(
     people: int,
     pictures: int,
 ) -> list[float]:
-    """Enrol some people with some pictures, and ask about everything else."""
+    """Enrol some people with some pictures, and classify everything else."""
     able = [n for n, rows in enrol.items() if sum(v is not None for v in rows) >= LEAST]
     known = [str(name) for name in rng.permutation(able)[:people]]
     kept: dict[str, Any] = {}
@@ -140,7 +140,7 @@ def _share(outcomes: list[bool]) -> float:
 
 
 def _read(people: dict[str, list[Path]], width: int) -> tuple[dict[str, list[Any]], float]:
-    """Describe the one face of every picture at a width; None where it does not pass the gate."""
+    """Describe the single face in every picture at a width; None if it does not pass the gate."""
     reader = HaarReader()
     began = time.process_time()
     found = {

@@ -83,7 +83,7 @@ class HalfHeartedWorld(InducingWorld):
 
 
 def complying(workspace: Supervised, share: float | None) -> Preferences | None:
-    """Return people who comply with this probability (None: with their own preferences)."""
+    """Return people who comply with this probability (None: by their own preferences)."""
     if share is None:
         return None
     strategies = activity_of(workspace.activity).strategies
@@ -99,7 +99,7 @@ def matrix(settings: Settings, case: Case) -> list[dict[str, Any]]:
     Settings: `activity`, `users`, and `complies` (a probability, or None for the usual ones).
 
     Returns:
-        A row for each behaviour: the number of games in which it was `executed`, the fault `came`,
+        A row for each behaviour: in how many games it was `executed`, the fault `came`,
             was `detected` in the same behaviour, with the right `class` and `cause`, and the number
             of `false` alarms.
     """
@@ -177,7 +177,7 @@ def alarms(settings: Settings, case: Case) -> dict[str, Any]:
 
     Settings as for `matrix`, and `follows`: the probability that a request is followed.
 
-    Returns:
+    `games`, `steps`, the count of each diagnosed code, and how often Tangy only asked.
         `games`, `steps`, how often each code was diagnosed, and how often Tangy only asked.
     """
     lesson, seed, games = case
@@ -207,7 +207,7 @@ def pairs(settings: Settings, case: Case) -> dict[str, Any]:
     """Inject a critical kind and another one at once: a case is (critical, other, seed, seeds).
 
     Returns:
-        The number of games in which both `came`, both were `diagnosed`, the critical one was
+        In how many games both `came`, both were `diagnosed`, the critical one was
         treated `first`, and both were `ended` (over, or tolerated as planned).
     """
     critical, other, seed, seeds = case

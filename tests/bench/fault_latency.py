@@ -1,10 +1,10 @@
-"""From a fault to its diagnosis on the screen: how long it takes while games are watched.
+"""Time from a fault to its diagnosis on the screen while games are watched.
 
 Run by hand: `python tests/bench/fault_latency.py [--rounds N]`. A game is paused in a program
-without a terminal; each kind of fault that a device shows at once is brought about at a random
-moment, and the time is taken until it is observed, and from then until its name is drawn: in the
-banner, or in the dialog of what halts the robot. Each has a game of its own. Last comes what
-looking costs.
+without a terminal; each kind of fault that a device shows at once is injected at a random
+moment. The bench measures the time to its observation, and from then until its name is drawn:
+in the banner, or in the dialog of a fault that halts the robot. Each has its own game. The
+last row is the cost of observing.
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ WIDTHS = (9, 9, 7, 9, 7, 7)
 
 
 def drawn(program: Program) -> str:
-    """Return what is drawn."""
+    """Return the drawn text."""
     strips = program.screen._compositor.render_strips()
     return "\n".join("".join(segment.text for segment in strip) for strip in strips)
 
 
 def told(program: Program, fault: Fault) -> bool:
-    """Say whether a fault is seen, a critical one in its dialog."""
+    """Return whether a fault is on the screen, a critical one in its dialog."""
     if fault.critical and not isinstance(program.screen, CriticalDialog):
         return False
     if not fault.critical and not program.screen.query_one(FaultBanner).words:
-        return False  # reading the whole screen takes longer than all the rest
+        return False  # reading the whole screen is by far the slowest part
     return fault.name in drawn(program)
 
 
@@ -69,10 +69,10 @@ def teach(workspace: Workspace) -> Policy:
 async def one(
     workspace: Workspace, policy: Policy, size: tuple[int, int], kind: str, chance: Random
 ) -> tuple[float, float]:
-    """Bring about a fault in a paused game.
+    """Inject a fault in a paused game.
 
     Returns:
-        The s from then until it is observed, and from its observation until it is drawn.
+        The s from injection to observation, and from observation until it is drawn.
     """
 
     async def start(program: Program) -> None:
@@ -101,7 +101,7 @@ async def one(
         begun = perf_counter()
         game.world.inject(kind)
         while not game.faults or not told(program, game.faults[0]):  # noqa: ASYNC110
-            await asyncio.sleep(0.004)  # reading the screen takes the program its time
+            await asyncio.sleep(0.004)  # reading the screen takes the program's own time
         seen = perf_counter()
         game.call_expert("bench")  # so that the next game begins without a question
         game.clear("bench")

@@ -1,16 +1,16 @@
-"""Pairs of all kinds of fault, twice each: which were missed, named wrong, told twice, or false.
+"""Pairs of all kinds of fault, twice each: missed, misnamed, repeated or false diagnoses.
 
 Run by hand: `python -m tests.bench.fault_pairs [--seed N] [--bench PAIRS [--first N] [--last N]]`.
-In the first game of a pair both come at one step, in the second one comes while Tangy recovers from
-the other. All pairs are simulated (about a minute); with --bench so many pairs, drawn by the seed,
-are played on the bench instead, each in one game, by turns in the first and in the second way, or
+In the first game of a pair both come in one step, in the second one comes while Tangy recovers from
+the other. All pairs are simulated (about a minute); --bench plays that number of pairs, drawn by
+the seed, on the bench instead, each in one game, alternately in the first and in the second way, or
 only the games from number --first to --last of them. Each bench game begins with the data folder
-of a robot that was just taught, so that it can be played again alone; the folder of a game with
-something wrong is kept, and named. A fault is missed if
-it could show and was not named; it is told twice if a second diagnosis has its code while it came
-once. Who never complies is told of in each visit, which counts once; so does what Tangy asked a
-person for in vain, and finds again in a later visit. What neither of the two calls for is a false
-alarm.
+of a newly taught robot, so that it can be replayed alone; the folder of a game with a wrong
+diagnosis is kept, and printed. A fault is missed if
+it could show and was not named; it is repeated if a second diagnosis has its code but it came
+once. A person who never complies is reported in each visit, which counts once; so does a request
+that a person left unanswered and that Tangy finds again in a later visit. A diagnosis that
+neither of the two faults explains is a false alarm.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tests.bench.fault_latency import teach
 
 ANEW = "never-complies"
-STEPS = (3, 9)  # of the first fault, by chance
+STEPS = (3, 9)  # of the first fault, drawn at random
 
 
 @dataclass
 class PairGame:
-    """A game with faults: what came, and what was wrong about its diagnoses."""
+    """A game with faults: what came, and the errors in its diagnoses."""
 
     at: tuple[str, ...]
     seed: int
@@ -63,7 +63,7 @@ class PairGame:
 
     @property
     def fine(self) -> bool:
-        """Whether there is nothing to read about in its log."""
+        """Whether its log has nothing worth reading."""
         return not self.wrong and self.stopped is None
 
     def __str__(self) -> str:
@@ -78,7 +78,7 @@ def ways(pair: tuple[str, str], step: int, number: int) -> tuple[str, str]:
 
 
 def judged(game: Supervision, one: PairGame) -> PairGame:
-    """Note what was missed, called something else, told twice or false."""
+    """Note which faults were missed, misnamed, repeated or false."""
     world = game.world
     assert isinstance(world, FaultyWorld | BenchedWorld)
     score = score_game(1, world.injection_log.all, game.faults, game.book)
@@ -103,7 +103,7 @@ def judged(game: Supervision, one: PairGame) -> PairGame:
 
 
 def left_at(earlier: Fault, fault: Fault) -> bool:
-    """Say whether a person was left in peace about a fault that a later visit finds again."""
+    """Return whether Tangy gave up on a person's fault that a later visit finds again."""
     same = (earlier.code, earlier.person) == (fault.code, fault.person)
     return same and any(move.kind == "left" for move in earlier.moves)
 
@@ -141,7 +141,7 @@ def drawn(pairs: Sequence[tuple[str, str]], chance: Random) -> list[PairGame]:
 
 
 def on_the_bench(one: PairGame, folder: Path) -> PairGame:
-    """Play a game with simulated devices, as fast as they can be computed, with a folder's data."""
+    """Play a game with simulated devices, as fast as possible, with a folder's data."""
     with closing(Workspace(folder)) as workspace:
         policy, _ = load_policy(workspace.store, workspace.activity)
         with open_bench(
@@ -157,9 +157,9 @@ def on_the_bench(one: PairGame, folder: Path) -> PairGame:
 
 
 def on_benches(taught: Path, games: Sequence[PairGame], keep: Path) -> Iterator[PairGame]:
-    """Play games on the bench, each with a copy of the data of a robot that was just taught.
+    """Play games on the bench, each with a copy of a newly taught robot's data.
 
-    A copy is kept if there is something to read about in its log.
+    A copy is kept if its log is worth reading.
     """
     for one in games:
         folder = keep / f"{'+'.join(one.at)}-{one.seed}"
@@ -173,7 +173,7 @@ def on_benches(taught: Path, games: Sequence[PairGame], keep: Path) -> Iterator[
 
 
 def main() -> None:
-    """Play, and print what was wrong, and the sums."""
+    """Play, and print the errors and the totals."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bench", type=int, default=0)

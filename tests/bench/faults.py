@@ -1,8 +1,8 @@
 """Every kind of fault with every behaviour, false alarms, pairs of faults, and games full of them.
 
 Run by hand: `python tests/bench/faults.py [--seeds 50] [--games 2000] [--jobs -1]` (minutes). A
-fault comes exactly with the behaviour, where it can show. Wanted: 99% detected within that
-behaviour (a person who follows nothing: within the requests that it takes), the right class
+fault comes exactly with the behaviour, where it can show. The goals: 99% detected within that
+behaviour (a person who follows nothing: within the requests that this takes), the right class
 always, the right cause in 95%, and at most .01 false alarms a game. All of it is simulated.
 """
 
@@ -63,7 +63,7 @@ def shown(title: str, *columns: str) -> Table:
 def swept(
     name: str, piece: Callable[[Settings, Case], Any], cases: Sequence[Case], jobs: int, **more: Any
 ) -> list[Any]:
-    """Do pieces of work on all cores."""
+    """Run tasks on all cores."""
     return Sweep(name, piece, {**SETTINGS, **more}, cases).run(Where(jobs=jobs))
 
 
@@ -76,7 +76,7 @@ def matrix(seeds: int, jobs: int, **more: Any) -> list[dict[str, Any]]:
 
 
 def print_matrix(rows: Sequence[Mapping[str, Any]], behaviours: Sequence[Behaviour]) -> None:
-    """Show in how many games of those with the fault it was detected, and how well explained."""
+    """Print in how many games with the fault it was detected, and how well explained."""
     names = [behaviour.name for behaviour in behaviours]
     table = shown(
         "Detected / came, with the behaviour above; ! where class or cause was not always right",
@@ -130,7 +130,7 @@ def print_matrix(rows: Sequence[Mapping[str, Any]], behaviours: Sequence[Behavio
 
 
 def print_alarms(games: int, jobs: int) -> None:
-    """Show the diagnoses in games without faults."""
+    """Print the diagnoses in games without faults."""
     table = shown("Games without faults, after three demonstrations by chance",
                   "", "demonstrations", "games", "behaviours", "only asked", "diagnosed",
                   "false alarms a game")  # fmt: skip
@@ -159,7 +159,7 @@ def print_alarms(games: int, jobs: int) -> None:
 
 
 def print_pairs(seeds: int, jobs: int) -> None:
-    """Show whether the critical fault comes first, for every pair with another kind."""
+    """Print whether the critical fault comes first, for every pair with another kind."""
     classes = kinds_by_recovery(load_faults(load_robot()))
     others = [kind for name, kinds in classes.items() if name != "expert" for kind in kinds]
     cases = [(a, b, 0, seeds) for a, b in product(classes["expert"], others)]
@@ -183,7 +183,7 @@ def print_pairs(seeds: int, jobs: int) -> None:
 
 
 def print_crowds() -> None:
-    """Show how games end that are full of faults."""
+    """Print how games full of faults end."""
     table = shown(
         "Twenty games in which every kind may come at every step",
         "", "faults came", "diagnosed", "critical", "left open", "longest game", "ended",

@@ -1,8 +1,8 @@
-"""Mutants of the activities that ship: each is read, or refused with its mistakes in words.
+"""Mutants of the shipped activities: each is read, or refused with its mistakes in words.
 
-`python -m tests.bench.file_mutants [NUMBER] [SEED]` counts the mutants that can be read, those that
-are refused, and those that end in any other error; of keys with a letter too few or two letters
-swapped it counts those whose refusal does not name the right key.
+`python -m tests.bench.file_mutants [NUMBER] [SEED]` counts the mutants that are read, that
+are refused, and that end in any other error; for keys with a missing letter or two swapped
+letters it counts refusals that do not name the right key.
 """
 
 from __future__ import annotations

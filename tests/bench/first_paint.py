@@ -1,9 +1,9 @@
 """CPU until the first screen is readable: `tangy`, beside the SQL client harlequin.
 
 Run by hand: `python tests/bench/first_paint.py HARLEQUIN` with the path of harlequin's program.
-Each is started in a pty of 120 x 40, what it writes is read by a terminal in memory, and when a
-word of its first screen can be read there the CPU that the process has used (user and system, of
-/proc) is noted. The two take turns; the ratio of the medians counts.
+Each is started in a pty of 120 x 40, and a terminal in memory reads its output. When a word of
+its first screen is readable there, the bench notes the CPU that the process has used (user and
+system, of /proc). The two take turns; the ratio of the medians counts.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ PATIENCE = 30.0  # s
 
 
 def cpu_until(word: str, command: Sequence[str], home: str) -> tuple[float, float]:
-    """Return CPU seconds and wall seconds until `word` can be read on the screen."""
+    """Return CPU seconds and wall seconds until `word` is readable on the screen."""
     screen = pyte.Screen(COLUMNS, LINES)
     stream = pyte.ByteStream(screen)
     parent, child = pty.openpty()
@@ -70,7 +70,7 @@ def cpu_until(word: str, command: Sequence[str], home: str) -> tuple[float, floa
 
 
 def compiled() -> bool:
-    """Say whether every module of Tangy stands compiled beside its source, and no older."""
+    """Return whether every module of Tangy has an up-to-date compiled file beside it."""
     folders = [tangy_tui, tangy_profiles]
     sources = [path for one in folders for path in Path(one.__path__[0]).rglob("*.py")]
     pairs = [(path, Path(cache_from_source(str(path)))) for path in sources]

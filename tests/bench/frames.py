@@ -1,8 +1,8 @@
-"""Bytes that the room writes to the terminal: while the robot walks at 10 Hz, and while it stands.
+"""Bytes that the room writes to the terminal: while the robot moves at 10 Hz, and while it stands.
 
 Run by hand: `python tests/bench/frames.py [--rounds N]`. A child shows a room that fills the
-window, with a command bar that has the keys, in a real pty; it is told by keys to begin a walk of
-five seconds, back and forth, and its output is counted. Then nothing happens for three seconds.
+window, with a focused command bar, in a real pty; keys make the robot move for
+five seconds, back and forth, and the output is counted. Then nothing happens for three seconds.
 CPU is the child's user and system time over the walks, of one core.
 """
 
@@ -33,7 +33,7 @@ SYNC_YES = b"\x1b[?2026;2$y"
 
 @dataclass(frozen=True)
 class Measured:
-    """What one window size cost."""
+    """The cost of one window size."""
 
     bytes_a_frame: float
     painted_frames: int
@@ -42,7 +42,7 @@ class Measured:
 
 
 class Child:
-    """The demo in a pty of its own."""
+    """The demo in its own pty."""
 
     def __init__(self, columns: int, lines: int, environ: dict[str, str]) -> None:
         self.terminal, child = pty.openpty()
@@ -73,7 +73,7 @@ class Child:
         return pieces
 
     def press(self, keys: bytes) -> None:
-        """Type."""
+        """Type keys."""
         os.write(self.terminal, keys)
 
     def cpu(self) -> float:
@@ -92,7 +92,7 @@ class Child:
 
 
 def measure(columns: int, lines: int, rounds: int, environ: dict[str, str]) -> Measured:
-    """Let the robot walk and stand in a window of this size."""
+    """Let the robot move and stand in a window of this size."""
     child = Child(columns, lines, environ)
     child.read(3.0)
     begun = child.cpu()
@@ -113,7 +113,7 @@ def measure(columns: int, lines: int, rounds: int, environ: dict[str, str]) -> M
 
 
 def main() -> int:
-    """Print the table; the exit status is 1 if a limit is not kept."""
+    """Print the table; the exit status is 1 if a limit is exceeded."""
     rounds = int(sys.argv[sys.argv.index("--rounds") + 1]) if "--rounds" in sys.argv else 4
     kinds = {
         "true colour": {"TERM": "xterm-256color", "COLORTERM": "truecolor"},
@@ -138,7 +138,7 @@ def main() -> int:
 
 
 def show_demo() -> int:
-    """Be the child: a room and a command bar; ctrl+g lets the robot walk to the next place."""
+    """Run as the child: a room and a command bar; ctrl+g moves the robot to the next place."""
     from typing import ClassVar
 
     from textual.app import ComposeResult

@@ -1,9 +1,9 @@
-"""Bytes that staff's screen writes for 4 and for 24 people: a walking robot, and the waiting times.
+"""Bytes that the staff screen writes for 4 and for 24 people: a moving robot, and waiting times.
 
-Run by hand: `python -m tests.bench.group_frames`. A child shows the room and staff's panel in a
-real pty. The robot walks for some seconds, at ten frames a second; then it stands, and the panel
-is told once a second how long everybody has waited or was not visited. A quarter of the people
-ask. The exit status is 1 if 24 people cost more than `MOST` times what four do.
+Run by hand: `python -m tests.bench.group_frames`. A child shows the room and the staff panel in a
+real pty. The robot moves for some seconds, at ten frames a second; then it stands, and the panel
+gets everybody's time of waiting or since the last visit once a second. A quarter of the people
+ask for help. The exit status is 1 if 24 people cost more than `MOST` times the bytes of four.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def measured(people: int, columns: int, lines: int) -> tuple[float, float]:
 
 
 def show(people: int) -> int:
-    """Be the child: ctrl+g lets the robot walk, ctrl+o lets the times pass."""
+    """Run as the child: ctrl+g moves the robot, ctrl+o lets the times pass."""
     from textual.app import ComposeResult
     from textual.binding import Binding, BindingType
     from textual.containers import Horizontal

@@ -2,9 +2,9 @@
 
 `python -m tests.bench.group_sizes [--games 100] [--seeds 3] [--most 12] [FILE ...]`
 
-For each activity and number of people: how many guided games the scripted teacher's answers need
-until a search of all games finds nothing left to show, then how many of so many games end, and how
-often Tangy would have asked in them. Each is counted over the seeds, and the worst one stands.
+For each activity and number of people: how many guided games of the scripted teacher it takes
+until a search of all games finds nothing left to show, then how many of the games end, and how
+often Tangy would have asked in them. Each is counted over the seeds; the worst one is printed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOST_STEPS, MOST_TAUGHT = 2_000, 4
 
 
 class Row(NamedTuple):
-    """What came of a group: guided games until all was shown, what is open, games, questions."""
+    """The result of a group: guided games until all was shown, open ones, games, questions."""
 
     taught: int
     left: int
@@ -37,7 +37,7 @@ class Row(NamedTuple):
 
 
 def whom(activity: DeclaredActivity, state: ActivityState, name: str) -> str | None:
-    """Return whom the file expects a behaviour to be for (None: the group)."""
+    """Return the addressee that the file expects for a behaviour (None: the group)."""
     selector = activity.expected_selector(state.situation)
     if selector is None:
         return first_addressee(activity.behaviours[name], state)
@@ -47,7 +47,7 @@ def whom(activity: DeclaredActivity, state: ActivityState, name: str) -> str | N
 def teach(
     activity: DeclaredActivity, people: Sequence[str], seed: int
 ) -> tuple[DemonstratedMoves, Row]:
-    """Show guided games until a search finds nothing that was not shown, four at most."""
+    """Show guided games, four at most, until a search finds nothing that was not shown."""
     taught, games = DemonstratedMoves(activity.behaviours), 0
     while True:
         games += 1
@@ -73,7 +73,7 @@ def play(
     games: int,
     seed: int,
 ) -> tuple[int, int]:
-    """Play games by what was shown; return how many end, and how many questions there were.
+    """Play games by the demonstrations; return how many end, and how many questions there were.
 
     The teacher answers a question, and the answer is learnt.
     """
@@ -97,13 +97,13 @@ def play(
 
 
 def rows(activity: DeclaredActivity, sizes: Sequence[int], games: int, seeds: int) -> Iterator[str]:
-    """Yield a line for each size of the group, as it is measured."""
+    """Yield a row for each size of the group, as it is measured."""
     for size in sizes:
         people = activity.teams or tuple(f"user{number}" for number in range(1, size + 1))
         found: list[Row] = []
         for seed in range(1, seeds + 1):
             taught, row = teach(activity, people, 100 * seed)
-            # what a demonstration of two games has shown is what the games are played by
+            # the games follow what was shown in a demonstration of two games
             ended, asked = play(activity, people, taught, games, 1000 + seed)
             found.append(row._replace(finished=ended, asked=asked))
         worst = Row(

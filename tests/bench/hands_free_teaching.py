@@ -1,11 +1,11 @@
-"""A whole guided game of Bingo, taught by voice alone: no key is pressed and no line is typed.
+"""A whole guided game of Bingo, taught by voice alone, without a key or a typed line.
 
 Run by hand: `python -m tests.bench.hands_free_teaching` (needs flite). A synthetic teacher says
-what the activity expects next, half of it in other words than the listed ones, now and then the
-wrong thing, which it denies when Tangy asks, or takes back when it has said yes to it. What was not
-understood is said again as it is listed. The sound goes through the real decoder, hands-free. The
-minutes are those of the sound, with a second of quiet after each sentence, and of waiting for
-Tangy. The paper's teachers took 9.6 minutes for a demonstration.
+what the activity expects next, half of it in other words than the listed ones, sometimes the
+wrong thing, which it denies when Tangy asks, or takes back after it said yes. A sentence that
+was not understood is repeated in the listed words. The sound goes through the real decoder,
+hands-free. The minutes are those of the sound, with a second of quiet after each sentence, and
+of waiting for Tangy. The paper's teachers took 9.6 minutes for a demonstration.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ YES = ("yes", "yes please", "yeah that's right", "correct", "go ahead")
 NO = ("no", "no that's wrong", "nope", "no thank you")
 UNDO = ("take that back", "undo that", "undo")
 QUIET = 1.0  # s after a sentence
-PATIENCE = 20.0  # s, after which nothing comes of a sentence
+PATIENCE = 20.0  # s until a sentence counts as without effect
 MOST = 400  # sentences
 
 
 class Teacher:
-    """Says aloud what is expected next, in a voice of its own."""
+    """Says aloud what is expected next, in a synthetic voice."""
 
     def __init__(self, teaching: TeachingSession, seed: int) -> None:
         self._teaching = teaching
@@ -97,7 +97,7 @@ class Teacher:
         return self._chance.choice(NO)
 
     def sees(self, before: object, steps: int) -> None:
-        """Take note of what came of the last sentence: the question `before`, and the `steps`."""
+        """Take note of the effect of the last sentence: the question `before`, and the `steps`."""
         question, shown = self._teaching.question, self._teaching.demonstration.steps
         if isinstance(before, Asked) and len(shown) > steps:
             self.errs = before.behaviour != self._meant
@@ -115,7 +115,7 @@ class Teacher:
 
 
 def voiced(text: str, voice: str, folder: Path) -> bytes:
-    """Let a voice say a sentence; return 16 kHz mono s16le."""
+    """Have a voice say a sentence; return 16 kHz mono s16le."""
     path = folder / f"{voice}-{text}.wav"
     if not path.exists():
         subprocess.run(["flite", "-voice", voice, "-t", text, "-o", str(path)], check=True)  # noqa: S603, S607
@@ -123,7 +123,7 @@ def voiced(text: str, voice: str, folder: Path) -> bytes:
 
 
 async def teach(folder: Path, voice: str, seed: int, *, show: bool) -> None:
-    """Teach one game, and print what it took."""
+    """Teach one game, and print the effort."""
     sound_from, sound_to = os.pipe()
     over = threading.Event()
     with closing(Workspace(folder / f"data-{voice}-{seed}")) as workspace:
@@ -140,7 +140,7 @@ async def teach(folder: Path, voice: str, seed: int, *, show: bool) -> None:
         running = asyncio.create_task(lines.run(resume=False))
         teacher, said, waited, spoken = Teacher(teaching, seed), 0, 0.0, 0.0
         chance = np.random.default_rng(seed)
-        await until(lambda: ears.state == "listening", 4 * PATIENCE)  # also the game has begun
+        await until(lambda: ears.state == "listening", 4 * PATIENCE)  # the game has begun, too
         while (
             (teacher.errs or not teaching.demonstration.finished)
             and said < MOST
@@ -179,7 +179,7 @@ def _write(pipe: int, pcm: bytes) -> None:
 
 
 async def until(true: object, seconds: float = PATIENCE) -> bool:
-    """Wait until something is true; return whether it was in time."""
+    """Wait until a condition is true; return whether it became true in time."""
     assert callable(true)
     end = time.monotonic() + seconds
     while not true():

@@ -1,10 +1,10 @@
-"""The longest gap of the screen's loop while a voice is heard or made, against one that idles.
+"""The longest gap of the screen's loop while speech is decoded or made, against an idle one.
 
 Run by hand: `python tests/bench/hearing.py [--rounds N]`; needs flite and espeak-ng. A child in a
 real pty shows the teaching screen with a microphone that plays sentences in real time. It is idle
 for some seconds, then the key is pushed and the sentences are decoded while level and words are
-drawn; then all calls of a game are made ready, into an empty cache, while Tangy speaks (to nobody).
-The loop is asked to wake every 5 ms; a gap is by how much later it does. CPU is the child's own.
+drawn; then all calls of a game are prepared, in an empty cache, while Tangy speaks (to nobody).
+The loop asks to be woken every 5 ms; a gap is the delay of a wake. CPU is the child's own.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ while True:
 
 
 def main() -> int:
-    """Print the table; the exit status is 1 if the limit is not kept."""
+    """Print the table; the exit status is 1 if the limit is exceeded."""
     flite = shutil.which("flite")
     if flite is None:
         print("flite is not installed")
@@ -75,7 +75,7 @@ def main() -> int:
 def measure(
     flite: str, folder: Path, columns: int, lines: int
 ) -> dict[str, tuple[float, float, float]]:
-    """Let a child measure itself in a window of this size."""
+    """Have a child measure itself in a window of this size."""
     sound = b""
     for n, words in enumerate(SENTENCES):
         wav = folder / f"{n}.wav"
@@ -109,7 +109,7 @@ def measure(
 
 
 def drain(terminal: int) -> None:
-    """Read what is written to a terminal until its program ends."""
+    """Read a terminal's output until its program ends."""
     try:
         while os.read(terminal, 1 << 16):
             pass
@@ -118,7 +118,7 @@ def drain(terminal: int) -> None:
 
 
 async def gaps(seconds: float) -> tuple[float, float, float]:
-    """Return the longest gap of the loop, that of 99 in 100 wakes, and the share of a core."""
+    """Return the loop's longest gap, that of 99 in 100 wakes, and the share of a core."""
     found: list[float] = []
     begun, used = perf_counter(), process_time()
     while perf_counter() < begun + seconds:

@@ -2,8 +2,8 @@
 
 Run by hand: `python -m tests.bench.idle_frames [SECONDS]`. Each session runs in a pty of 80 x 24
 and of 120 x 40: teaching with questions, help, palette, undo and library; a simulated game and a
-second console that watches it; a live game on the bench. A frame counts as idle where no cell and
-not the cursor is otherwise behind it than before.
+second console that watches it; a live game on the bench. A frame counts as idle if it leaves
+every cell and the cursor as they were before.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def teaching(folder: Path, size: tuple[int, int], seconds: float) -> dict[str, F
 
 
 def playing(folder: Path, size: tuple[int, int], seconds: float) -> dict[str, Frames]:
-    """Let a simulated game run, look at how it is decided, and watch it from a second console."""
+    """Play a simulated game, look at its decisions, and watch it from a second console."""
     terminal = _opened(folder, size, "play", "--seed", "5", "--speed", "20")
     watching: FramedTerminal | None = None
     try:
@@ -70,7 +70,7 @@ def playing(folder: Path, size: tuple[int, int], seconds: float) -> dict[str, Fr
 
 
 def live(folder: Path, size: tuple[int, int], seconds: float) -> dict[str, Frames]:
-    """Let a live game run on the bench."""
+    """Play a live game on the bench."""
     terminal = _opened(folder, size, "live", "--bench", "--begin", "--seed", "5")
     try:
         terminal.until("STOP")

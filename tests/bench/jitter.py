@@ -1,9 +1,9 @@
-"""How late a robot's data comes: recorded on a bench in real time into a file that tests replay.
+"""Delays of a robot's data: recorded on a bench in real time into a file that tests replay.
 
 Run by hand: `python -m tests.bench.jitter record FILE [--seconds N] [--load N] [--hold S]...`, and
 `python -m tests.bench.jitter report FILE...`. A robot drives up and down on the bench; each beat of
-its process is kept with the ages of what it drives by. `--load` lets busy processes run beside it;
-`--hold` stops the link for so many s, again and again, with as long a rest in between.
+its process is kept with the ages of its driving data. `--load` runs busy processes beside it;
+`--hold` stops the link for S s, again and again, with equally long rests in between.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ RESTS = 4.0  # s between two hold-ups
 
 @dataclass(frozen=True)
 class Beat:
-    """When a beat came, in s, and how old the data of each device was, in s."""
+    """The time of a beat, in s, and the age of each device's data, in s."""
 
     at: float
     ages: dict[str, float]
@@ -57,7 +57,7 @@ def read_beats(path: Path) -> list[Beat]:
 
 @dataclass(frozen=True)
 class Replayed:
-    """What a recording amounts to: pauses, s lost to them, and the faults by device."""
+    """The summary of a recording: pauses, s lost to them, and the faults by device."""
 
     pauses: int
     seconds: float
@@ -67,7 +67,7 @@ class Replayed:
 
 
 def replay(beats: Sequence[Beat], robot: Robot) -> Replayed:
-    """Go through a recording with the limits of a robot's profile."""
+    """Replay a recording with the limits of a robot's profile."""
     now = [beats[0].at]
     watch = PauseWatch(robot.liveness, MotionLimits(), clock=lambda: now[0])
     watch.begin()
@@ -150,7 +150,7 @@ def record(path: Path, seconds: float, load: int, holds: Sequence[float]) -> Non
 
 
 def report(path: Path) -> None:
-    """Print what a recording amounts to."""
+    """Print the summary of a recording."""
     beats, robot = read_beats(path), load_robot()
     ages = [max(beat.ages.values()) for beat in beats]
     cuts = quantiles(ages, n=1000)

@@ -1,4 +1,4 @@
-"""What is held against the log of a game that was killed: see `kills`."""
+"""Checks against the log of a killed game: see `kills`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tangy_tui.learning.policies import load_policy
 
 @dataclass
 class Found:
-    """What came of killing games: counts, and how long each restart took (s)."""
+    """The result of killing games: counts, and the time of each restart (s)."""
 
     kills: int = 0
     acknowledged: int = 0
@@ -36,7 +36,7 @@ class Found:
     """How many of the resumed games were played to their end."""
 
     def differs(self, what: str) -> None:
-        """Count something that is not the same."""
+        """Count a difference."""
         self.other[what] = self.other.get(what, 0) + 1
 
     def document(self) -> dict[str, object]:
@@ -55,13 +55,13 @@ class Found:
 
 
 def share(values: Sequence[float], percent: int) -> float | None:
-    """Return the value that so many of 100 are not above; None of none."""
+    """Return the percentile at this share of 100; None of an empty list."""
     ordered = sorted(values)
     return round(ordered[-(-percent * len(ordered) // 100) - 1], 2) if ordered else None
 
 
 def logged(folder: Path) -> tuple[list[object], bool]:
-    """Return the steps and responses of the last game, in their order, and whether it ended."""
+    """Return the steps and responses of the last game, in order, and whether it ended."""
     with Store.open(folder, write=False) as store:
         begun = store.last(GameBeginning)
         if begun is None:
@@ -137,7 +137,7 @@ def compare_end(
     believed: dict[str, dict[str, list[float]]],
     found: Found,
 ) -> None:
-    """Count what is not as it should be in a game on the bench that was played to its end."""
+    """Count the errors of a game on the bench that was played to its end."""
     events, over = logged(folder)
     found.played_on += over
     if not over:
@@ -154,7 +154,7 @@ def compare_end(
 
 
 def compare_order(events: list[object], whole: list[object], found: Found) -> None:
-    """Count it where numbers were not called once, in the order of an unkilled game."""
+    """Count games with repeated numbers, or with another order than an unkilled game."""
     called, others = calls_in(events), calls_in(whole)
     both = min(len(called), len(others))
     if len(set(called)) != len(called) or called[:both] != others[:both]:
@@ -162,7 +162,7 @@ def compare_order(events: list[object], whole: list[object], found: Found) -> No
 
 
 def calls_in(events: Sequence[object]) -> list[int]:
-    """Return the numbers that were called in a game, in their order."""
+    """Return the numbers that were called in a game, in order."""
     draws = {b.name for b in load_activity("bingo").behaviours.values() if b.effect == "draw"}
     return [
         n for step in steps_in(events) if step[0] in draws for n in cast(tuple[int, ...], step[3])

@@ -1,15 +1,15 @@
-"""Games that are killed at random moments, and gone on with: what is the same, and how soon.
+"""Games that are killed at random moments and resumed: what differs, and how soon they go on.
 
 A game is played by the program itself (`tangy play --plain`, or `tangy live --bench --headless`)
-and killed with SIGKILL at a random line of its output, after a random delay. What it said before
-was acknowledged: it has to be in the log. Then the game is taken up as `--resume` does, and its
-state, deck, calls, requests and beliefs are held against the log of the same game that nobody
-killed (simulated), or against the killed log itself (bench, whose games are never the same twice).
+and killed with SIGKILL at a random line of its output, after a random delay. Its output up to then
+was acknowledged, so the log must have it. Then the game is resumed as by `--resume`, and its
+state, deck, calls, requests and beliefs are compared with the log of the same game without a
+kill (simulated), or with the killed log itself (bench, whose games are never the same twice).
 
-A game on the bench is killed up to `LEGS` times, each time while it goes on after the kill before.
-Its log has to begin with what each kill left, and to call no number twice and in the order of an
+A game on the bench is killed up to `LEGS` times, each time while it goes on after the last kill.
+Its log must begin with its entries at each kill, repeat no number, and keep the order of an
 unkilled game of the same seed. One of `ENDS` games is then played to its end: the beliefs that the
-program prints have to be those of the logged responses.
+program prints must be those of the logged responses.
 
     python -m tests.bench.kills --kills 200
     python -m tests.bench.kills --kills 20 --bench
@@ -41,10 +41,10 @@ TANGY = (sys.executable, "-P", "-c", "from tangy_tui.cli import main; main()")
 STEP = re.compile(r"^ *(\d+)\.? (?=\w)")
 """A line that tells a step that was carried out, and kept."""
 LATEST = 0.02  # s after a line until the kill
-START = 120.0  # s until a program says something, on a busy machine
+START = 120.0  # s until the program's first output, on a busy machine
 LEGS = 5  # kills of one game on the bench
-FURTHER = 10  # steps after a resumption, fewer than these, until the next kill
-ENDS = 4  # one of so many games on the bench is played to its end
+FURTHER = 10  # at most this many steps, less one, from a resumption until the next kill
+ENDS = 4  # one in this many games on the bench is played to its end
 
 
 def taught_folder(folder: Path) -> Path:
@@ -66,7 +66,7 @@ def playing(folder: Path, seed: int, *, bench: bool, resume: bool = False) -> li
 
 
 def lines_of(process: subprocess.Popen[bytes]) -> Iterator[str]:
-    """Yield the lines that a program says, as they come."""
+    """Yield the program's lines as they come."""
     assert process.stdout is not None
     rest = b""
     with selectors.DefaultSelector() as ready:
@@ -82,9 +82,9 @@ def lines_of(process: subprocess.Popen[bytes]) -> Iterator[str]:
 
 
 def kill_at(command: Sequence[str], steps: int, delay: float) -> int | None:
-    """Run a game, and kill it so many s after it has told so many steps; return how many it told.
+    """Run a game, and kill it some s after a number of reported steps; return how many it reported.
 
-    None where it was over before.
+    Return None if it was over before.
     """
     process = subprocess.Popen(  # noqa: S603
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
@@ -99,7 +99,7 @@ def kill_at(command: Sequence[str], steps: int, delay: float) -> int | None:
             if told >= steps and not killed:
                 time.sleep(delay)
                 with contextlib.suppress(ProcessLookupError):
-                    os.killpg(process.pid, signal.SIGKILL)  # what it started ends with it
+                    os.killpg(process.pid, signal.SIGKILL)  # its children end with it
                 killed = True
     finally:
         with contextlib.suppress(ProcessLookupError):
@@ -109,11 +109,11 @@ def kill_at(command: Sequence[str], steps: int, delay: float) -> int | None:
 
 
 def restarted(folder: Path, *, bench: bool) -> tuple[float, float]:
-    """Start the program with `--resume`; return after how many s the game stands there.
+    """Start the program with `--resume`; return after how many s the game is ready.
 
-    In simulation it stands there paused. On the bench the game is read, and the robot's devices
-    are started next. The second number is how many of the seconds the program was computing: the
-    rest it waited for the machine.
+    A simulated game is then paused. On the bench the game has been read, and the robot's devices
+    start next. The second number is the CPU time in s: for the rest the program waited
+    for the machine.
     """
     words = ["live", "--bench"] if bench else ["play", "--speed", "1000"]
     there = SWITCHING_ON if bench else "paused"
@@ -143,9 +143,9 @@ def run(kills: int, *, bench: bool, seed: int, scratch: Path, every: int = 10) -
     Args:
         kills: how many.
         bench: on the bench of simulated devices; else in simulation.
-        seed: of the moments, and of the games.
+        seed: for the moments and the games.
         scratch: an empty folder.
-        every: of so many killed games in simulation one is played on to its end.
+        every: one in this many killed simulated games is played to its end.
     """
     rng = random.Random(seed)
     taught = taught_folder(scratch / "taught")
@@ -177,7 +177,7 @@ def run(kills: int, *, bench: bool, seed: int, scratch: Path, every: int = 10) -
 
 
 def play_to_the_end(folder: Path, seed: int, *, bench: bool, resume: bool = False) -> str:
-    """Play a game of a seed to its end, or an interrupted one; return what the program printed."""
+    """Play a game of a seed to its end, or an interrupted one; return the program's output."""
     command = playing(folder, seed, bench=bench, resume=resume) + (["--json"] if bench else [])
     done = subprocess.run(  # noqa: S603
         command, input="go on\n", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
@@ -189,11 +189,11 @@ def play_to_the_end(folder: Path, seed: int, *, bench: bool, resume: bool = Fals
 def kill_once(
     folder: Path, game: int, rng: random.Random, whole: list[object], found: Found
 ) -> None:
-    """Kill a simulated game, and hold it against the whole one."""
+    """Kill a simulated game, and compare it with the unkilled one."""
     steps, delay = rng.randrange(1, len(steps_in(whole))), rng.uniform(0, LATEST)
     told = kill_at(playing(folder, game, bench=False), steps, delay)
     events, over = logged(folder)
-    if told is None or over:  # it came to its end before it could be killed
+    if told is None or over:  # it ended before it could be killed
         return
     count(found, told, events)
     if events != whole[: len(events)]:
@@ -224,7 +224,7 @@ def kill_again_and_again(
 
 
 def count(found: Found, told: int, events: Sequence[object]) -> None:
-    """Count a kill, and the steps that the program told and its log has."""
+    """Count a kill, and the steps that the program reported and its log has."""
     steps = len(steps_in(events))
     found.kills += 1
     found.at_steps.append(steps)
@@ -233,7 +233,7 @@ def count(found: Found, told: int, events: Sequence[object]) -> None:
 
 
 def note_restart(found: Found, folder: Path, *, bench: bool) -> None:
-    """Note how long a restart took."""
+    """Note the time of a restart."""
     took, computed = restarted(folder, bench=bench)
     found.restarts.append(took)
     found.computed.append(computed)

@@ -1,9 +1,9 @@
-"""How well a robot keeps its place if odometry and scans come late by a network that loses packets.
+"""How well a robot keeps its place if a lossy network delays odometry and scans.
 
 Run by hand: `python -m tests.bench.late_scans [--loss SHARE]... [--delay S] [--seeds N]
-[--newest]`. A robot drives to every seat and back to the front of the common room, in a time of its
-own. Its base and its scanner have a connection each; what is lost on one arrives later, and so does
-what follows it. The robot stands while the newest scan or odometry is older than its profile
+[--newest]`. A robot drives to every seat and back to the front of the common room, in simulated
+time. Its base and its scanner have a connection each; a lost message arrives later, and so do
+the messages behind it. The robot stands while the newest scan or odometry is older than its profile
 allows. With --newest a scan is matched with the newest odometry instead of that of its own time.
 """
 
@@ -30,12 +30,12 @@ from tests.hw.raycast import driven, look, room_sides
 Value = TypeVar("Value")
 
 TICK, SCANS = 0.05, 0.1  # s
-LONGEST = 120.0  # s of a drive
-LOST = 0.5  # metres by which the estimate is wrong
+LONGEST = 120.0  # s, of a drive
+LOST = 0.5  # metres of error from which an estimate is wrong
 
 
 class Line(Generic[Value]):
-    """A connection on which each message is due at some time, in order."""
+    """A connection that delivers each message at its due time, in order."""
 
     def __init__(self, quality: LinkQuality, chance: Random) -> None:
         self._quality, self._chance = quality, chance
@@ -50,7 +50,7 @@ class Line(Generic[Value]):
         self._coming.append((self._due, now, what))
 
     def receive(self, now: float) -> Iterator[Stamped[Value]]:
-        """Take what has arrived; its time is on a clock that is 1000 s ahead."""
+        """Take the messages that have arrived; their time is on a clock that is 1000 s ahead."""
         while self._coming and self._coming[0][0] <= now + 1e-9:
             _, sent, value = self._coming.popleft()
             measured = self._clock.measured(sent + 1000.0, now)
@@ -60,7 +60,7 @@ class Line(Generic[Value]):
 
 @dataclass
 class Kept:
-    """By how many metres and radians the robot was wrong, and how drives ended."""
+    """The robot's errors in metres and radians, and how drives ended."""
 
     metres: list[float] = field(default_factory=list)
     radians: list[float] = field(default_factory=list)
@@ -71,7 +71,7 @@ class Kept:
 
 
 class LateRobot(DrivenRobot):
-    """A robot whose data is late."""
+    """A robot with late data."""
 
     def __init__(self, quality: LinkQuality, seed: int, *, matched: bool) -> None:
         super().__init__(seed=seed)
@@ -85,7 +85,7 @@ class LateRobot(DrivenRobot):
         self.matched = matched
 
     def go(self, kept: Kept) -> None:
-        """Drive to the goal of the navigator."""
+        """Drive to the navigator's goal."""
         began, was_lost = self.time, False
         sides = room_sides(ROOM, *self.boxes)
         kept.drives += 1
@@ -130,7 +130,7 @@ class LateRobot(DrivenRobot):
 
 
 def main() -> None:
-    """Drive, and print how well the place was kept."""
+    """Drive, and print the errors of the place."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--loss", type=float, action="append")
     parser.add_argument("--delay", type=float, default=0.0)

@@ -1,10 +1,10 @@
-"""How exactly the robot is followed over Freiburg's building 079, on a log of a real robot.
+"""How exactly the robot is localised in Freiburg's building 079, on a log of a real robot.
 
 Run by hand: `TANGY_LASER_LOG=DIR python -m tests.bench.localisation`, where DIR holds
-freiburg-079.log.gz. The poses in that log were corrected by a mapping program and are taken for
-the truth; the map is drawn from every second scan, and the robot is followed by the other ones.
-The wheels' steps stand in the log as lengths without sign: driving backwards reads as forwards.
-They are restored where the corrected poses went backwards.
+freiburg-079.log.gz. The poses in that log were corrected by a mapping program and serve as the
+truth; the map is drawn from every second scan, and the other scans localise the robot.
+The log has the wheels' steps as lengths without sign: driving backwards reads as forwards.
+Their signs are restored where the corrected poses went backwards.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from tangy_hw.navigation.scan_log import LoggedScan, read_log
 from tangy_hw.navigation.slip_detection import SlipDetector
 
 FOLDER = "TANGY_LASER_LOG"
-MISSED = 1.4  # radians that wheels leave out once, where they slip
-AROUND = 1  # steps before and after: their corrected sum says whether it was driven backwards
+MISSED = 1.4  # radians of a turn that slipping wheels leave out once
+AROUND = 1  # steps before and after: the sign of their corrected sum is the direction
 
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """What the robot measured at one moment, and where it truly was."""
+    """The robot's measurements at one moment, and its true place."""
 
     odometry: Pose
     scan: Scan
@@ -50,7 +50,7 @@ def logged(folder: str) -> list[LoggedScan]:
 
 
 def moments(log: Sequence[LoggedScan], *, restored: bool = True) -> list[Moment]:
-    """Return the log with the wheels' own count of the way."""
+    """Return the log with the wheels' own odometry."""
     forward = np.array([relative_pose(a.pose, b.pose).x for a, b in pairwise(log)])
     around = np.convolve(forward, np.ones(2 * AROUND + 1), "same")
     odometry = IDENTITY
@@ -74,7 +74,7 @@ def building(folder: str, part: int = 2) -> OccupancyMap:
 def errors(
     localisation: Localisation, way: Sequence[Moment]
 ) -> Iterator[tuple[float, float, float]]:
-    """Follow a way; yield by how many metres and radians it is off, and the time it took in s."""
+    """Localise along a way; yield the errors in metres and radians, and the time taken in s."""
     for moment in way:
         begun = time.process_time()
         pose = localisation.update(moment.odometry, moment.scan).pose
@@ -84,7 +84,7 @@ def errors(
 
 
 def apart(way: Sequence[Moment], metres: float) -> list[Moment]:
-    """Return the moments at which the robot has gone so far since the last of them."""
+    """Return moments of a drive, this many metres apart."""
     found, gone = [way[0]], 0.0
     for before, one in pairwise(way):
         gone += hypot(one.truth.x - before.truth.x, one.truth.y - before.truth.y)
@@ -95,7 +95,7 @@ def apart(way: Sequence[Moment], metres: float) -> list[Moment]:
 
 
 def unturned(way: Sequence[Moment], seed: int) -> list[Moment]:
-    """Return a way on which the wheels count `MISSED` less of a turn, somewhere in the middle."""
+    """Return a drive on which the wheels count `MISSED` less of a turn, somewhere in the middle."""
     middle = int(np.random.default_rng(seed).integers(len(way) // 5, len(way) * 3 // 5))
     found = [way[0]]
     for number, (before, one) in enumerate(pairwise(way)):
@@ -107,7 +107,7 @@ def unturned(way: Sequence[Moment], seed: int) -> list[Moment]:
 
 
 def row_apart(map_: OccupancyMap, ways: Mapping[int, Sequence[Moment]]) -> str:
-    """Sum up how exactly the robot is followed on the way of each seed, and how often it is wrong.
+    """Sum up the errors of localisation on the drive of each seed, and how often it is wrong.
 
     It is wrong when it counts as found and is off by more than a metre.
     """
@@ -129,14 +129,14 @@ def row_apart(map_: OccupancyMap, ways: Mapping[int, Sequence[Moment]]) -> str:
 
 
 def doubts(localisation: Localisation, way: Sequence[Moment]) -> int:
-    """Follow a way; return after how many scans the robot thinks that it is lost."""
+    """Follow a drive; return after how many scans the robot considers itself lost."""
     return sum(localisation.update(one.odometry, one.scan).lost for one in way)
 
 
 def kidnapped(map_: OccupancyMap, way: Sequence[Moment], seed: int) -> int | None:
-    """Carry the robot elsewhere without telling it; return after how many scans it knows.
+    """Move the robot elsewhere without telling it; return after how many scans it is found again.
 
-    It knows when it stays within half a metre of the truth for twenty scans.
+    It is found when it stays within half a metre of the truth for twenty scans.
     """
     rng = np.random.default_rng(seed)
     first = then = int(rng.integers(len(way) - 500))

@@ -30,7 +30,7 @@ STEP_DRAWN = re.compile(r"\d\d:\d\d:\d\d +(\d+)\. ")
 
 
 def watched(folder: Path, seconds: float) -> list[float]:
-    """Look on by a process of its own; return how late each event came (s) that it saw happen."""
+    """Watch from another process; return the delay of each event (s) that occurred meanwhile."""
     watching = subprocess.Popen(  # noqa: S603
         [*TANGY, "watch", "--json", "--data", str(folder)], stdout=subprocess.PIPE
     )
@@ -40,7 +40,7 @@ def watched(folder: Path, seconds: float) -> list[float]:
         at, now = json.loads(line).get("at"), datetime.now(UTC)
         if at is not None and datetime.fromisoformat(at) > since:
             late.append((now - datetime.fromisoformat(at)).total_seconds())
-        since = min(since, now)  # what was there before it looked on is not late
+        since = min(since, now)  # events from before are not late
         if time.monotonic() > began + seconds:
             break
     watching.terminate()
@@ -49,10 +49,10 @@ def watched(folder: Path, seconds: float) -> list[float]:
 
 
 def seen(folder: Path, seconds: float, columns: int, lines: int) -> tuple[list[float], float, int]:
-    """Look on by a screen in a terminal of its own, and leave.
+    """Watch by a screen in its own terminal, and leave.
 
-    Returns how late each step was drawn (s after it was logged), the share of a processor that the
-    screen took once it was drawn, and the bytes that it wrote meanwhile.
+    Returns the delay of each drawn step (s after it was logged), the screen's share of a processor
+    once it was drawn, and the bytes that it wrote meanwhile.
     """
     terminal = Terminal((*TANGY, "watch", "--data", str(folder)), columns=columns, lines=lines)
     drawn: dict[int, datetime] = {}
@@ -83,7 +83,7 @@ def seen(folder: Path, seconds: float, columns: int, lines: int) -> tuple[list[f
 
 
 def stopped(folder: Path, stops: int) -> list[float]:
-    """Stop again and again; return after how many s each stop was carried out and logged."""
+    """Stop repeatedly; return after how many s each stop was carried out and logged."""
     took = []
     guest = Guest(folder)
     for number in range(stops):
@@ -100,7 +100,7 @@ def stopped(folder: Path, stops: int) -> list[float]:
 
 
 def computed(process: subprocess.Popen[bytes]) -> float:
-    """Return how many s a process has computed."""
+    """Return a process's CPU seconds."""
     fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / 100
 

@@ -1,8 +1,8 @@
-"""What Tangy says when single looks are late, misread or not readable.
+"""What Tangy says when single looks are late, misread or unreadable.
 
-Run by hand: `python tests/bench/looks.py [--games 500][--share .05]` (minutes). Nothing
-is wrong in these games but the looks, so each fault that is told is a false alarm; an accusation is
-one where somebody was asked to mend what was right on their card.
+Run by hand: `python tests/bench/looks.py [--games 500][--share .05]` (minutes). Only the
+looks are wrong in these games, so each reported fault is a false alarm; an accusation is
+a request to a person to correct a card that was right.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ LESSONS = (0, 1, 2, 3, 4)
 
 
 def played(kind: type[OddWorld], odd: str, share: float, games: int) -> dict[str, Any]:
-    """Play games in which looks of a kind are odd.
+    """Play games with odd looks of one kind.
 
     Returns:
-        How many `games`, `looks` and odd ones there were, how often somebody was `accused`, how
+        The number of `games`, `looks` and odd ones, how often a person was `accused`, how
         often Tangy only `asked`, how many were `stopped`, and how often each code was diagnosed.
     """
     found: Counter[str] = Counter()

@@ -3,9 +3,9 @@
 Run by hand: `python -m tests.bench.lost_robots [--tries N] [--seed N]`. A robot starts anywhere in
 the simulated room, without a pose, and drives from point to point with a scan each `--seconds`.
 With `TANGY_LASER_LOG` it also starts anywhere in the log of `tests.bench.localisation`, with scans
-`--metres` apart. It is followed until `LOOKS` scans after it first counted as found, or until it
-has gone `FAR`. With `--still` it only moves to and fro, by some 10 cm, with `--turning` it turns on
-the spot in the room. It is wrong where it counts as found and is off by more than `OFF`.
+`--metres` apart. Each try ends `LOOKS` scans after the robot first counted as found, or after
+`FAR`. With `--still` it only moves to and fro, by some 10 cm, with `--turning` it turns on
+the spot in the room. It is wrong if it counts as found with an error of more than `OFF`.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ TO_AND_FRO, STILL_LOOKS = 0.12, 80  # m, and scans, of a robot that hardly moves
 
 @dataclass
 class Outcome:
-    """What became of robots that did not know where they were."""
+    """The results of robots that did not know where they were."""
 
     tries: int = 0
     wrong: int = 0
@@ -52,7 +52,7 @@ class Outcome:
     """Time of the processor for each scan, in s."""
 
     def follow(self, localisation: Localisation, way: Iterable[Moment]) -> None:
-        """Let a robot find its place on a way."""
+        """Let a robot find its place on a drive."""
         self.tries += 1
         gone, since, before = 0.0, 0, None
         for number, moment in enumerate(way, 1):
@@ -75,7 +75,7 @@ class Outcome:
         self.never += not since
 
     def row(self) -> str:
-        """Sum up in a line."""
+        """Return a row that sums them up."""
         scans = np.percentile(self.scans or [np.nan], [50, 95])
         metres = np.percentile(self.metres or [np.nan], [50, 95])
         return (
@@ -89,7 +89,7 @@ class Outcome:
 
 
 def drives(rng: np.random.Generator, seconds: float) -> Iterator[Moment]:
-    """Yield what a robot measures that drives from point to point in the simulated room."""
+    """Yield the measurements of a robot that drives from point to point in the simulated room."""
     sides = room_sides(ROOM)
     points = [(float(rng.uniform(0.8, 9.2)), float(rng.uniform(0.8, 4.2)))]
     while len(points) < 20:
@@ -108,7 +108,7 @@ def drives(rng: np.random.Generator, seconds: float) -> Iterator[Moment]:
 
 
 def staying(rng: np.random.Generator, there: Twist, back: Twist, dt: float) -> Iterator[Moment]:
-    """Yield what a robot measures that stays at one place in the room, and goes there and back."""
+    """Yield the measurements of a robot that moves to and fro at one place in the room."""
     sides, wheels = room_sides(ROOM), Wheels(rng)
     true = Pose(*(float(rng.uniform(*ends)) for ends in ((0.8, 9.2), (0.8, 4.2), (-pi, pi))))
     for number in range(STILL_LOOKS):
@@ -119,7 +119,7 @@ def staying(rng: np.random.Generator, there: Twist, back: Twist, dt: float) -> I
 
 
 def near_each_other(way: Sequence[Moment], first: int) -> list[Moment]:
-    """Return two moments of a way, .1 to .3 m and less than .3 rad apart, in turn; [] if none."""
+    """Alternate two moments of a drive, .1 to .3 m and less than .3 rad apart; [] without any."""
     one = way[first]
     for other in way[first + 1 :]:
         step = relative_pose(one.truth, other.truth)
@@ -140,7 +140,7 @@ def turning(tries: int, seed: int) -> Outcome:
 
 
 def still(folder: str | None, tries: int, seed: int) -> Outcome:
-    """Let robots that hardly move find their place in the room, or in the building of a log."""
+    """Let robots that hardly move find their place in the room, or in a log's building."""
     found = Outcome()
     map_ = building(folder) if folder else map_of_room(ROOM)
     for one in range(tries):
@@ -166,7 +166,7 @@ def in_room(map_: OccupancyMap, seconds: float, tries: int, seed: int) -> Outcom
 
 
 def in_log(folder: str, metres: float, tries: int, seed: int) -> Outcome:
-    """Let robots find their place in the building of the log."""
+    """Let robots find their place in the log's building."""
     found, map_ = Outcome(), building(folder)
     way = apart(moments(logged(folder))[1::2], metres)
     for one in range(tries):

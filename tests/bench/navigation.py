@@ -1,8 +1,8 @@
-"""How fast a way is planned, against A* in plain Python on the same costs in the same run.
+"""How fast a path is planned, against A* in plain Python on the same costs in the same run.
 
 Run by hand: `python -m tests.bench.navigation`. Both work on the common room (10 x 8 m at 5 cm),
-between the same random places: Tangy inflates the map and plans, the yardstick is given the
-inflated costs and only plans. Times are of the processor. On short ways the two are alike, as A*
+between the same random places: Tangy inflates the map and plans; A* gets the
+inflated costs and only plans. Times are of the processor. On short paths the two are alike, as A*
 looks at little of the map; on those round the table it takes ten times as long.
 """
 
@@ -30,10 +30,10 @@ DIAGONAL = sqrt(2)
 
 
 def a_star(costs: list[list[float]], start: tuple[int, int], goal: tuple[int, int]) -> float:
-    """Return what the cheapest way over a grid costs, in cells; inf if there is none.
+    """Return the cost of the cheapest path over a grid, in cells; inf if there is none.
 
-    A step costs its length times the mean of the costs at its ends. The octile distance, each cell
-    of which costs at least 1, never overestimates.
+    A step costs its length times the mean of the costs at its ends. The octile distance never
+    overestimates, because each cell costs at least 1.
     """
     rows, columns = len(costs), len(costs[0])
     best = {start: 0.0}
@@ -63,7 +63,7 @@ def a_star(costs: list[list[float]], start: tuple[int, int], goal: tuple[int, in
 
 @dataclass(frozen=True)
 class Race:
-    """Seconds and costs (in metres) of both, for as many pairs of places."""
+    """Seconds and costs (in metres) of both, for the same number of pairs of places."""
 
     ours: list[float]
     theirs: list[float]
@@ -72,12 +72,12 @@ class Race:
 
     @property
     def ratio(self) -> float:
-        """Our time for all ways as a share of theirs."""
+        """Tangy's time for all paths as a share of A*'s."""
         return sum(self.ours) / sum(self.theirs)
 
 
 def places(costs: Costs, seed: int, count: int) -> list[tuple[int, int]]:
-    """Draw cells in which the robot can stand."""
+    """Draw cells where the robot can stand."""
     rng = np.random.default_rng(seed)
     rows, columns = np.nonzero(np.isfinite(costs.cost))
     chosen = rng.choice(len(rows), count, replace=False)

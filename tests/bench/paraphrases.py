@@ -1,11 +1,11 @@
-"""What is understood of ways to ask that no phrasebook has, typed and as if they had been heard.
+"""How many requests outside every phrasebook are understood, typed and as if they had been heard.
 
 Run by hand: `python -m tests.bench.paraphrases`. The sentences of `sentences.py` at even places set
 the limits of `paraphrases` and `understanding`, the others are quoted; `--set` counts another one:
-that of `requests_second.toml` chose nothing, those of `staff_sayings.toml` and
+`requests_second.toml` set no limit; `staff_sayings.toml` and
 `staff_requests.toml` became wordings of Bingo. `--noise` lets voices say the sentences, each one of
-them, clean or with white noise so many dB below, and decodes them. `--phrases` counts phrases and
-keywords alone, and `--show` lists what went wrong (of the sentences that set limits only).
+them, clean or with white noise this many dB below, and decodes them. `--phrases` counts phrases and
+keywords alone, and `--show` lists the errors (of the sentences that set limits only).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ OUTCOMES = ("right", "offered", "wrong", "misled", "nothing")
 
 
 class Sentence(NamedTuple):
-    """A sentence of a kind, and what it asks for: a behaviour ("" is nothing) and a person."""
+    """A sentence of a kind, and its request: a behaviour ("" is nothing) and a person."""
 
     kind: str
     text: str
@@ -74,12 +74,12 @@ def staff_sentences(file: Path) -> list[Sentence]:
 
 
 def spoken(sentence: Sentence, book: Phrasebook) -> str:
-    """Judge what the spoken door makes of a sentence that was heard clearly."""
+    """Judge how voice control understands a sentence that was heard clearly."""
     return understood(sentence, clearly_heard(sentence.text), book)
 
 
 def understood(sentence: Sentence, evidence: AcousticEvidence, book: Phrasebook) -> str:
-    """Judge what the spoken door makes of a sentence as it was heard."""
+    """Judge how voice control understands a sentence as it was heard."""
     said = understand(evidence, book, USUAL)
     if isinstance(said, StopCommand):
         return "wrong"
@@ -89,7 +89,7 @@ def understood(sentence: Sentence, evidence: AcousticEvidence, book: Phrasebook)
 
 
 def typed(sentence: Sentence, book: Phrasebook) -> str:
-    """Judge what the typed door makes of a sentence."""
+    """Judge how the command bar understands a sentence."""
     command = book.understand(sentence.text)
     if command is None:
         return "nothing"
@@ -124,7 +124,7 @@ def print_outcomes(
     *,
     show: bool = False,
 ) -> None:
-    """Print how many sentences of each kind have each outcome at a door."""
+    """Print how many sentences of each kind have each outcome, typed or heard."""
     counts: dict[str, Counter[str]] = {}
     for one in sentences:
         outcome = door(one, book)
@@ -141,7 +141,7 @@ def print_outcomes(
 def by_sound(sentences: list[Sentence], book: Phrasebook, noise: str) -> None:
     """Let voices say the sentences, decode them, and print how many are right and so on."""
     decoder = make_decoder(wanted(book, USUAL))
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are printed there
     said = {
         one: Said("", one.text, VOICES[place % len(VOICES)]) for place, one in enumerate(sentences)
     }

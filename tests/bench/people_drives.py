@@ -1,8 +1,8 @@
-"""How a robot drives among people in a simulated room: whom it touches, whether it arrives, when.
+"""Drives among people in a simulated room: whom the robot touches, whether and when it arrives.
 
 Run by hand: `python -m tests.bench.people_drives [SCENE ...] --drives 60`. The geometry is that of
-`people_simulation`. A touch counts by how it began: the robot drove, and the person was before it
-(ahead) or not (behind); or somebody came up against a robot that stood. No real person or base
+`people_simulation`. A touch counts by how it began: the robot drove, with the person ahead
+(ahead) or not (behind); or a person walked into a robot that stood. No real person or base
 took part.
 """
 
@@ -22,7 +22,7 @@ __all__ = ["MAP", "ROOM", "drives"]
 
 
 def drives(scene: str, count: int, seed: int = 0, first: int = 0) -> list[Drive]:
-    """Drive a number of times through a scene, from the `first` drive of the seed on."""
+    """Drive a number of times through a scene, from the seed's `first` drive on."""
     number = list(SCENES).index(scene)
     return [
         SCENES[scene](np.random.default_rng([seed, number, one])).run()
@@ -31,7 +31,7 @@ def drives(scene: str, count: int, seed: int = 0, first: int = 0) -> list[Drive]
 
 
 def row(scene: str, found: Sequence[Drive]) -> str:
-    """Sum up a scene in a line."""
+    """Return a row that sums up a scene."""
     arrived = [drive.time for drive in found if drive.arrived]
     told = sum(drive.told == "blocked" and not drive.arrived for drive in found)
     near = min((drive.nearest for drive in found), default=inf)

@@ -1,9 +1,9 @@
-"""How a robot drives by keys held down, towards people and walls: whom and what it touches.
+"""Drives by keys held down, towards people and walls: whom and what the robot touches.
 
-Run by hand: `python -m tests.bench.people_keys --drives 100`. Whoever holds the keys steers at the
-nearest person or at a wall, at full speed, and never lets go; the people and how touches count are
-those of `people_drives`. With `--encounters`, a person stands straight ahead instead, and walks at
-the robot as soon as it has come near. No real person or base took part.
+Run by hand: `python -m tests.bench.people_keys --drives 100`. The driver steers at the
+nearest person or at a wall, at full speed, and never lets go; people and the counting of touches
+are as in `people_drives`. With `--encounters`, a person stands straight ahead instead, and walks
+at the robot as soon as it has come near. No real person or base took part.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from tests.bench.people_simulation import (
 from tests.hw.raycast import Wheels
 
 AMONG = ("standing", "walking", "wandering", "steps in", "group", "wheelchair")
-SECONDS, AIMS = 30.0, 4.0  # s: a drive, and until another person or wall is steered at
+SECONDS, AIMS = 30.0, 4.0  # s: of a drive, and until the driver steers at another target
 KNOWN = 2.0  # s after which the robot knows that a person stands
 PACES = (0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.2)  # m/s at which they set off
 GAPS = np.arange(0.1, 1.3, 0.06)  # m between them and the robot when they set off
@@ -46,7 +46,7 @@ ROUND = np.linspace(-pi, pi, 72, endpoint=False)
 
 
 def by_keys(number: int, seed: int) -> tuple[Drive, bool]:
-    """Drive by keys among people; return the drive, and whether a wall or a thing was touched."""
+    """Drive by keys among people; return the drive, and whether a wall or an object was touched."""
     rng = np.random.default_rng([seed, 1000, number])
     drive = SCENES[AMONG[number % len(AMONG)]](rng)
     limits = MotionLimits()
@@ -71,7 +71,7 @@ def by_keys(number: int, seed: int) -> tuple[Drive, bool]:
 
 
 def _steers(drive: Drive, aim: float) -> float:
-    """Return how fast whoever holds the keys turns: at who is near, or somewhere."""
+    """Return the driver's rate of turn: towards the nearest person, or a random place."""
     people = [(hypot(p.x - drive.pose.x, p.y - drive.pose.y), p) for p in drive.people]
     far, person = min(people, key=lambda found: found[0])
     if far < 2.5:
@@ -85,7 +85,7 @@ def _commanded(hand: HandDrive, navigator: Navigator, scan: Scan, now: float) ->
 
 
 def speed_when_met(gap: float, walks: float, seed: int = 5) -> float:
-    """Drive at a person who stands; return how fast the robot drove when they met, in m/s.
+    """Drive at a standing person; return the robot's speed when they met, in m/s.
 
     The person walks at the robot, `walks` m/s fast, as soon as it is `gap` m away from them.
     """
@@ -120,7 +120,7 @@ def encounters(seed: int) -> str:
 
 
 def row(found: Sequence[tuple[Drive, bool]]) -> str:
-    """Sum drives up in a line."""
+    """Return a row that sums up drives."""
     ahead = [t.speed for drive, _ in found for t in drive.touches if t.kind == "ahead"]
     speeds = f" at {max(ahead):.2f} m/s" if ahead else ""
     return (

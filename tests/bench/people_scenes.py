@@ -25,19 +25,19 @@ def way(rng: Generator) -> tuple[Pose, Pose]:
 
 
 def along(start: Pose, goal: Pose, share: float, aside: float = 0.0) -> tuple[float, float]:
-    """Return a point so far along the straight line to a goal, and so many metres to the left."""
+    """Return the point this far along the straight line to a goal, and this many m to its left."""
     dx, dy = goal.x - start.x, goal.y - start.y
     far = hypot(dx, dy)
     return start.x + share * dx - aside * dy / far, start.y + share * dy + aside * dx / far
 
 
 def inside(x: float, y: float, margin: float = 0.5) -> bool:
-    """Say whether somebody can stand there."""
+    """Return whether a person can stand there."""
     return margin < x < ROOM.width - margin and margin < y < ROOM.table[1] - margin
 
 
 def standing(rng: Generator) -> Drive:
-    """Three people stand about, near the straight line."""
+    """Three people stand near the straight line."""
     start, goal = way(rng)
     people: list[Person] = []
     while len(people) < 3:
@@ -61,7 +61,7 @@ def gap(rng: Generator) -> Drive:
 
 
 def beside(rng: Generator) -> Drive:
-    """Somebody stands .7 to .9 m beside the goal."""
+    """A person stands .7 to .9 m beside the goal."""
     while True:
         start, goal = way(rng)
         angle, far = rng.uniform(-pi, pi), rng.uniform(0.7, 0.9)
@@ -71,7 +71,7 @@ def beside(rng: Generator) -> Drive:
 
 
 def at_the_wall(rng: Generator) -> Drive:
-    """Somebody leans against the wall that the robot drives along, ankles .08 to .2 m off it."""
+    """A person leans against the wall that the robot drives along, ankles .08 to .2 m off it."""
     start = Pose(1.0, rng.uniform(0.45, 0.6), 0.0)
     goal = Pose(rng.uniform(6.0, 8.0), rng.uniform(0.45, 0.6), 0.0)
     person = Person(rng.uniform(3.0, 4.5), rng.uniform(0.14, 0.26), 0.0)
@@ -98,14 +98,14 @@ def steps_in(rng: Generator) -> Drive:
                 return
             if (
                 far > 0.06 and person.gap(drive.pose, drive.away) > 0.15
-            ):  # nobody walks into what stands there
+            ):  # nobody walks into an object there
                 person.walk(atan2(ay - person.y, ax - person.x), min(speed, far / TICK))
 
         return Drive(start, goal, [Person(x, y, rng.uniform(-pi, pi), step)], rng)
 
 
 def walking(rng: Generator, *, yields: bool = False, slow: bool = False) -> Drive:
-    """Two walk to and fro across the way and look at nothing; or stop before the robot."""
+    """Two walk to and fro across the path and look at nothing; or stop before the robot."""
     start, goal = way(rng)
     people: list[Person] = []
     for _ in range(2):
@@ -140,7 +140,7 @@ def walking(rng: Generator, *, yields: bool = False, slow: bool = False) -> Driv
 
 
 def yielding(rng: Generator) -> Drive:
-    """Two walk to and fro across the way, and stop before the robot."""
+    """Two walk to and fro across the path, and stop before the robot."""
     return walking(rng, yields=True)
 
 
@@ -173,7 +173,7 @@ def _wanders(rng: Generator) -> Step:
 
 
 def group(rng: Generator) -> Drive:
-    """Four stand together and talk, in the way."""
+    """Four stand together and talk, on the path."""
     while True:
         start, goal = way(rng)
         x, y = along(start, goal, rng.uniform(0.4, 0.6), rng.uniform(-0.3, 0.3))
@@ -188,7 +188,7 @@ def group(rng: Generator) -> Drive:
 
 
 def wheelchair(rng: Generator) -> Drive:
-    """Somebody in a wheelchair goes to and fro across the way, and looks at nothing."""
+    """A person in a wheelchair goes to and fro across the path, and looks at nothing."""
     drive = walking(rng, slow=True)
     drive.people = drive.people[:1]
     drive.people[0].radius = CHAIR
@@ -196,7 +196,7 @@ def wheelchair(rng: Generator) -> Drive:
 
 
 def overtaken(rng: Generator) -> Drive:
-    """Somebody comes from straight behind, faster than the robot drives."""
+    """A person comes from straight behind, faster than the robot drives."""
     while True:
         start, goal = way(rng)
         start = start._replace(heading=atan2(goal.y - start.y, goal.x - start.x))

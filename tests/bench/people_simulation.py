@@ -1,9 +1,9 @@
 """People on legs or wheels in a simulated room, and a robot that drives among them.
 
-The geometry here is the bench's own, and knows what the robot does not: where torsos are. People
-are discs of which a laser sees the legs alone; the robot is a disc of .25 m, or what its body says,
+The bench has its own geometry, and knows what the robot does not: where torsos are. People
+are discs of which a laser sees the legs alone; the robot is a disc of .25 m, or its profile's body,
 with a scanner of 270 degrees at 10 Hz (2 cm of noise, 3 % of beams and 1 % of scans lost) whose
-commands come .1 s late. Nobody walks through the robot: who comes up against it steps back.
+commands come .1 s late. Nobody walks through the robot: a person who touches it steps back.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ TICK = 0.1  # s
 LATE = 1  # ticks until a command is carried out
 BEAMS, ANGLE = 360, 1.5 * pi
 NOISE, NO_BEAM, NO_SCAN = 0.02, 0.03, 0.01
-ROBOT, TORSO, LEG, APART = 0.25, 0.22, 0.06, 0.1  # m; the last: of a leg from the middle
+ROBOT, TORSO, LEG, APART = 0.25, 0.22, 0.06, 0.1  # m; the last: from a leg to the person's middle
 STRIDE, STEPS = 0.2, 1.0  # m that a leg swings to either side; swings a second
 GAIN, BRAKE, TURNS = 0.8, 1.0, 3.0  # m/s^2, m/s^2, rad/s^2 of the base
-MOVES = 0.02  # m/s from which on the robot drives
+MOVES = 0.02  # m/s from which on the robot counts as driving
 LONGEST = 120.0  # s
-BACK, BUMPED = 0.5, 2.0  # m/s and s for which people step back who came against the robot
-CHAIR = 0.35  # m, the radius of a wheelchair with somebody in it
+BACK, BUMPED = 0.5, 2.0  # m/s and s for which people step back after they touched the robot
+CHAIR = 0.35  # m, the radius of an occupied wheelchair
 ROOM = load_room()
 MAP = map_of_room(ROOM)
 WALLS = room_sides(ROOM)
@@ -68,7 +68,7 @@ class Person:
         self.gone += speed * TICK
 
     def circles(self) -> Iterator[tuple[float, float, float]]:
-        """Yield what a laser sees: where legs or wheels are, and their radius."""
+        """Yield the circles that a laser sees: the centre and radius of legs or wheels."""
         if self.radius > TORSO:
             yield from self._wheels()
             return
@@ -77,7 +77,7 @@ class Person:
             yield (*self._at(swing, side * APART), LEG)
 
     def _wheels(self) -> Iterator[tuple[float, float, float]]:
-        """Yield two large wheels, two castors, and the feet of who sits there."""
+        """Yield two large wheels, two castors, and the sitting person's feet."""
         for side in (-1, 1):
             for along in np.linspace(-0.3, 0.2, 11):
                 yield (*self._at(float(along), side * 0.28), 0.02)
@@ -89,7 +89,7 @@ class Person:
         return self.x + along * c - aside * s, self.y + along * s + aside * c
 
     def gap(self, pose: Pose, away: Away) -> float:
-        """Return how many metres are between this torso and a robot."""
+        """Return the distance between this torso and a robot, in m."""
         return away(pose, self.x, self.y) - self.radius
 
 
@@ -98,13 +98,13 @@ Away = Callable[[Pose, float, float], float]
 
 
 def disc(pose: Pose, x: float, y: float) -> float:
-    """Return how far a point is from a round robot."""
+    """Return the distance of a point from a round robot."""
     return hypot(x - pose.x, y - pose.y) - ROBOT
 
 
 @dataclass(frozen=True)
 class Touch:
-    """One touch, as it began: who touched whom, and how fast the robot drove, in m/s."""
+    """One touch, as it began: who touched whom, and the robot's speed, in m/s."""
 
     kind: Kind
     speed: float
@@ -138,7 +138,7 @@ class Drive:
         self.pose = self.start
 
     def run(self, navigator: Navigator | None = None) -> Drive:
-        """Drive until it has arrived, or for as long as a drive may take."""
+        """Drive until it has arrived, or until the drive's time is up."""
         navigator = navigator or Navigator(MAP, self.rng, self.start)
         wheels, sent = Wheels(self.rng), [STILL] * LATE
         navigator.go(self.goal)
@@ -158,7 +158,7 @@ class Drive:
         return self
 
     def move(self) -> None:
-        """Let the robot and everybody move for a tick, and take note of who touches whom."""
+        """Move the robot and everybody for a tick, and record who touches whom."""
         self.pose = driven(self.pose, self.twist, TICK)
         for person in self.people:
             self._note(person)
@@ -168,13 +168,13 @@ class Drive:
                 person.walk(atan2(person.y - self.pose.y, person.x - self.pose.x), BACK)
             else:
                 person.step(person, self)
-            if person.gap(self.pose, self.away) < min(0.0, before):  # they stop against it
+            if person.gap(self.pose, self.away) < min(0.0, before):  # they stop at the robot
                 self._note(person)
                 person.x, person.y = was
         self.time += TICK
 
     def look(self) -> Scan:
-        """Return what the laser sees."""
+        """Return the laser's scan."""
         first, step = -ANGLE / 2, ANGLE / (BEAMS - 1)
         angles = self.pose.heading + first + step * np.arange(BEAMS, dtype=np.float64)
         legs = [leg for person in self.people for leg in person.circles()]
@@ -207,12 +207,12 @@ class Drive:
         self.silent = max(self.silent, self._quiet)
 
     def count(self, kind: Kind) -> bool:
-        """Say whether anybody was touched so."""
+        """Return whether anybody was touched this way."""
         return any(touch.kind == kind for touch in self.touches)
 
 
 def followed(twist: Twist, told: Twist) -> Twist:
-    """Return the speed of a base one tick after a command."""
+    """Return a base's speed one tick after a command."""
     brakes = abs(told.forward) < abs(twist.forward)
     most = (BRAKE if brakes else GAIN) * TICK
     return Twist(

@@ -1,11 +1,11 @@
-"""Regret of every way to choose a strategy beside the paper's, and decisions per second.
+"""Regret of every method of choosing a strategy beside the paper's, and decisions per second.
 
 Run by hand: `python tests/bench/persuasion.py [PEOPLE]` (needs the extra [bench]). Everybody
 answers the k-th use of a strategy the same way whichever method asks, so that methods, mabwiser's
-among them, differ by what they choose and by nothing else. Regret is the compliance that was
-expected to be lost: the sum of the best strategy's rate less the chosen one's. Wanted, at T = 60:
+among them, differ only by their choices. Regret is the expected loss of compliance:
+the sum of the best strategy's rate less the chosen one's. The goals, at T = 60:
 Bayes-UCB at most .65 x Thompson, with a prior at most .5 x on a population, Thompson 6.2 +- .4;
-and a plain belief chooses and learns at least 10 x as often in a second as mabwiser.
+and a plain belief chooses and learns at least 10 x as often per second as mabwiser.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Ours:
 
 
 class MabWiser:
-    """mabwiser with one person; what cannot begin without data uses every strategy once."""
+    """mabwiser with one person; methods that cannot begin without data use every strategy once."""
 
     def __init__(self, policy: Any, seed: object, *, once_each: bool = False) -> None:
         from mabwiser.mab import MAB
@@ -86,7 +86,7 @@ def liking(favourite: str) -> Rates:
 
 
 def even(person: object) -> Rates:
-    """Every strategy is the favourite of as many people."""
+    """Each strategy is the favourite of the same share of people."""
     return liking(Random(f"even/{person}").choice(STRATEGIES))
 
 
@@ -106,7 +106,7 @@ def uneven(person: object) -> Rates:
 def meet(
     chooser: Chooser, rates: Rates, person: object, times: int, change: int = 0
 ) -> tuple[list[float], Counts]:
-    """Let a method meet one person.
+    """Run a method with one person.
 
     Returns:
         The regret after each interaction, and the counts of the responses. From the interaction
@@ -129,7 +129,7 @@ def meet(
 
 
 def met_before(crowd: Crowd, group: object) -> list[Counts]:
-    """Return the counts of earlier people, whom the paper's method met."""
+    """Return the counts of earlier people, with whom the paper's method was used."""
     people = [f"{group}/earlier/{n}" for n in range(EARLIER)]
     return [meet(Ours(Thompson(), p), crowd(p), p, MET)[1] for p in people]
 
@@ -143,7 +143,7 @@ def regrets(
     earlier: bool = False,
     change: int = 0,
 ) -> list[list[float]]:
-    """Return each person's regrets; a new group of earlier people comes with every tenth."""
+    """Return each person's regrets; each ten people have a new group of earlier people."""
     before: list[Counts] = []
     found = []
     for person in range(people):
@@ -232,7 +232,7 @@ def per_second(chooser: Chooser, learn: bool) -> float:
 
 
 def bare_per_second(learn: bool) -> float:
-    """Return decisions per second from a belief alone, without what the program keeps of each."""
+    """Return decisions per second from a belief alone, without the program's records."""
     method, rng = Thompson(), Random(1)
     beliefs = prior = method.prior(STRATEGIES)
     begun = perf_counter()
@@ -247,8 +247,8 @@ def bare_per_second(learn: bool) -> float:
 def speeds(learn: bool) -> tuple[float, float, float]:
     """Return the medians of decisions per second: a plain belief, the program, mabwiser.
 
-    They take turns, so that a noisy machine is noisy for all. With `learn` each decision is
-    followed by its response, as in life: mabwiser spends most of its time there.
+    They take turns, so that load on the machine affects all alike. With `learn` each decision is
+    followed by its response, as in a game: mabwiser spends most of its time there.
     """
     rounds = [
         (

@@ -1,9 +1,9 @@
-"""How well words are guessed that are not in the dictionary, and how long a look-up takes.
+"""How well pronunciations outside the dictionary are guessed, and how long a look-up takes.
 
 Run: python tests/bench/pronouncing.py [WORDS]
 
-A word that is measured is taken out of the dictionary first; words made of it stay ("rosary" for
-"rosa"), as they would for a name that is new. A guess is right where it is one of the dictionary's
+A measured word is taken out of the dictionary first; words made of it stay ("rosary" for
+rosa"), as they would for a new name. A guess is right if it is one of the dictionary's
 own pronunciations; the error is counted in phones to the nearest of them.
 """
 

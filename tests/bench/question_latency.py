@@ -1,7 +1,7 @@
-"""How long after the key a spoken command has its meaning, which is when its question is asked.
+"""Delay from the key to the understood command, which is when Tangy asks its question.
 
-Run by hand: `python -m tests.bench.question_latency [--times N]` on a machine that has nothing else
-to do; needs flite and festival. Each sentence arrives as it is spoken, in pieces of 40 ms; the key
+Run by hand: `python -m tests.bench.question_latency [--times N]` on an idle machine; needs
+flite and festival. Each sentence arrives as it is spoken, in pieces of 40 ms; the key
 that ends it is pressed with the last word, or some time after. The load is printed with the times.
 """
 
@@ -47,7 +47,7 @@ PIECE = 2 * round(0.04 * RATE)  # bytes
 
 
 async def press(recogniser: Recogniser, pcm: bytes, after: float) -> float:
-    """Let a sentence arrive, press the key so many s later; return the s until it is understood."""
+    """Feed a sentence, press the key some s after it; return the s until it is understood."""
     sound: asyncio.Queue[bytes] = asyncio.Queue()
     hearing = asyncio.create_task(recogniser.hear(sound))
     hiss = np.random.default_rng(0).normal(0, 8, round(after * RATE)).astype("<i2").tobytes()
@@ -64,7 +64,7 @@ async def press(recogniser: Recogniser, pcm: bytes, after: float) -> float:
 
 
 async def measure(times: int) -> None:
-    """Print median, 95th percentile and longest time, of phrases and of sentences that are none."""
+    """Print median, 95th percentile and longest time, of phrases and of other sentences."""
     recogniser = Recogniser()
     await recogniser.start(wanted(BOOK, USUAL))
     said = {
@@ -78,7 +78,7 @@ async def measure(times: int) -> None:
             kind: [voices.heard(one, "clean", ())[: -2 * QUIET] for one in every]
             for kind, every in said.items()
         }
-    for every in sounds.values():  # models are loaded
+    for every in sounds.values():  # load the models
         await press(recogniser, every[0], 0.0)
     for after, kind in product(AFTER, sounds):
         found = sorted([await press(recogniser, pcm, after) for pcm in sounds[kind] * times])

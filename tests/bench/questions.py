@@ -1,10 +1,10 @@
-"""How often a blind yes is taken for one, and a seen one is not, over links and multiplexers.
+"""How often a blind yes is accepted, and a seen one is not, over links and multiplexers.
 
 Run by hand: `python -m tests.bench.questions [--times N] [NAME...]`. A person sits at the far end
-of a relay with a delay each way, jitter and a rate (`tests/support/link.py`). Blindly:
+of a relay with a delay each way, jitter and a rate (`tests/support/link.py`). Blindly: they type
 `call number`, and `y` at a moment drawn between at once and a round trip later, unless the question
-could be read by then. Seen: the yes that the question names, .3 s after it could be read at the far
-end (and as much later as jitter may hold up what asks the terminal behind it). What is counted are
+was readable by then. Seen: the yes that the question names, .3 s after it was readable at the far
+end (later by the longest hold-up of the terminal's replies by jitter). The bench counts
 steps of the demonstration.
 """
 
@@ -37,7 +37,7 @@ DONE = re.compile(r"Tangy says:")
 
 @dataclass(frozen=True)
 class Counted:
-    """What was counted of one way to the program."""
+    """The counts of one way to the program."""
 
     name: str
     times: int
@@ -50,7 +50,7 @@ HERE = Link()
 
 @dataclass(frozen=True)
 class Way:
-    """One way to the program: a link, what answers, what lies between, and where it seems to be."""
+    """One way to the program: a link, which end answers the terminal's queries, a multiplexer."""
 
     name: str
     link: Link = HERE
@@ -78,7 +78,7 @@ WAYS = (
 
 
 def command_of(way: Way, folder: Path, seed: int) -> list[str]:
-    """Return the command that starts teaching, behind what lies between."""
+    """Return the command that starts teaching through the multiplexer."""
     tangy = [
         TANGY,
         "--data",
@@ -136,7 +136,7 @@ def open_far(way: Way, folder: Path, seed: int) -> tuple[FarTerminal, Terminal]:
 
 
 def lines_blind(far: FarTerminal, terminal: Terminal, times: int, longest: float, seed: int) -> int:
-    """Count how often a y that was typed blindly behind a command executes it, by lines."""
+    """Count how often a y typed blindly after a command executes it, by lines."""
     rng = random.Random(seed)
     before = len(DONE.findall(read(terminal.raw)))
     for _ in range(times):
@@ -196,7 +196,7 @@ def counted(way: Way, times: int) -> Counted:
                     taken[kind] += count()
                 finally:
                     if way.through:
-                        far.type("\x03")  # what lies between outlives its terminal
+                        far.type("\x03")  # a multiplexer outlives its terminal
                         far.run(1.0)
                     terminal.end()
             left, seed = left - some, seed + 1
@@ -204,7 +204,7 @@ def counted(way: Way, times: int) -> Counted:
 
 
 def main() -> None:
-    """Count on the ways that are named, or on all."""
+    """Run the named ways, or all."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--times", type=int, default=50)
     parser.add_argument("names", nargs="*")

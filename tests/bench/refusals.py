@@ -1,8 +1,8 @@
-"""Somebody who says no to every request: what is told of them, and what becomes of the game.
+"""A person who refuses every request: Tangy's reports of them, and the outcome of the game.
 
 Run by hand: `python -m tests.bench.refusals [--games N] [--seed N] [--bench] [--keep DIR]`. One
 person refuses from about the eighth step on, in the simulated room or with --bench on the bench,
-where Tangy sees cards by its camera or does not. It is counted whether Tangy names it, how often it
+with or without a camera for cards. The bench counts whether Tangy names the refusal, how often it
 asks in vain, and how long the others wait: from the arrival at that person until the robot leaves.
 """
 
@@ -31,7 +31,7 @@ from tests.support.games import in_vain
 
 @dataclass(frozen=True)
 class Refusing:
-    """What became of a game with a person who refuses; the longest visit to them in s."""
+    """The result of a game with a person who refuses; the longest visit to them in s."""
 
     person: str
     asked_in_visit: int
@@ -42,7 +42,7 @@ class Refusing:
 
 
 def refusing(one: PairGame) -> Refusing | None:
-    """Sum up a game; None if it ended before Tangy left anybody in peace."""
+    """Sum up a game; None if it ended before Tangy gave up on a person."""
     told = [event.fault for event in one.events if isinstance(event, Diagnosed)]
     person = next((fault.person for fault in told if fault.code == ANEW), None)
     if person is None:

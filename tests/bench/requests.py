@@ -1,13 +1,13 @@
 """How well signs are seen in infrared pictures: recall and false requests, by the sign's size.
 
 Run by hand: `python -m tests.bench.requests [--tune] [--sequences N]`. Sequences of 12 pictures
-are made up (see `tests.hw.signs`): four seats, half of them with a sign up; discs, squares, bars,
+are drawn (see `tests.hw.signs`): four seats, half of them with a sign up; discs, squares, bars,
 lamps, rings, polygons, trapezia and glints on the table and around it; reflections in the table;
-a hand over a part of some signs; blur and noise. The limits of `triangles` were set looking at
-`--tune`; what is quoted are other seeds. A fifth of the sequences has no signs at all.
+a hand over a part of some signs; blur and noise. The limits of `triangles` were set with
+`--tune`; quoted figures use other seeds. A fifth of the sequences has no signs at all.
 
-`frame`: seats with a sign up that one picture shows. `asks`: that persistence lets ask, from the
-fifth picture on. `false`: pictures in which it lets somebody ask who does not.
+`frame`: seats with a sign up in a single picture. `asks`: those that persistence accepts, from the
+fifth picture on. `false`: pictures in which it accepts a request that nobody makes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tests.hw.signs import CORNERS, SEATS, sequence
 
 TUNED, QUOTED = 0, 500_000
 SIZES = ((10, 14), (14, 20), (20, 30), (30, 40), (40, 50))
-FULL = 4  # pictures until persistence can be expected to know
+FULL = 4  # pictures until persistence should have accepted a sign
 
 
 def main() -> None:

@@ -1,12 +1,12 @@
-"""What the link by rosbridge costs: time of a processor for each message, and latency.
+"""The cost of the link by rosbridge: processor time for each message, and latency.
 
 Run by hand: `python -m tests.bench.rosbridge [--messages N]`. Server and drivers share one process
-and one event loop here, as little as can be lies between them; costs are of both ends together,
-latencies of a loopback that has nothing else to do.
+and one event loop, with nothing else between them; costs include both ends,
+latencies are of a loopback without other traffic.
 
 `CPU ms`: processor time for one message, from `publish` to the driver's newest value. `step`: one
-call of a service before which a scan and two odometries were published, as a bench in lock-step
-does ten times in a second of its own. `stop`: from `RosBase.stop` to the simulator's hearing of it,
+service call after a scan and two odometries were published, as a bench in lock-step
+does ten times per simulated second. `stop`: from `RosBase.stop` until the simulator receives it,
 with a thousand other messages waiting to be sent.
 """
 
@@ -31,7 +31,7 @@ BEAMS = 360
 
 
 def scan() -> dict[str, Any]:
-    """Return a scan of which a tenth of the beams met nothing."""
+    """Return a scan with a tenth of the beams without a return."""
     rng = np.random.default_rng(7)
     ranges = np.round(rng.uniform(0.3, 5, BEAMS), 3)
     ranges[rng.random(BEAMS) < 0.1] = np.inf

@@ -1,8 +1,8 @@
 """Bytes that teaching writes to the terminal: for a question, its answer, help and the palette.
 
 Run by hand: `python -m tests.bench.screen_bytes`. The program runs in a real pty of each size.
-After a few steps each thing is done three times, and the bytes are counted that are written until
-nothing is for half a second. The largest of the three counts.
+After a few steps each action is done three times; the bench counts the bytes until
+half a second passes without output. The largest of the three counts.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ TIMES = 3
 
 
 def measured(columns: int, lines: int) -> dict[str, int]:
-    """Return the bytes of each thing at a size in columns and lines."""
+    """Return the bytes of each action at a size in columns and lines."""
     with tempfile.TemporaryDirectory() as folder:
         command = [TANGY, "--data", folder, "teach", "--teacher", "ann", "--seed", "3"]
         terminal = Terminal(command, columns=columns, lines=lines)

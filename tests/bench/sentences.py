@@ -1,7 +1,7 @@
-"""Sentences for `speech.py`: ways to ask that no phrasebook has, and speech that asks for nothing.
+"""Sentences for `speech.py`: requests outside every phrasebook, and speech without a request.
 
-Of each list the sentences at even places (the first, the third ...) set weights and limits; figures
-are quoted on the others.
+In each list the sentences at even places (the first, the third ...) set weights and limits;
+quoted figures use the others.
 """
 
 from __future__ import annotations

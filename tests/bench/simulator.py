@@ -1,8 +1,8 @@
 """Steps per second of the simulator with a policy, beside wrapped Gymnasium CartPole.
 
 Run by hand: `python tests/bench/simulator.py` (needs the extra [bench]). Both run in this process,
-in turns, so that a noisy machine is noisy for both; the ratio of the medians counts. A step of
-ours is: observe the joint state, look up the decision, execute the behaviour. A step of CartPole
+in turns, so that load on the machine affects both; the ratio of the medians counts. A step of
+Tangy: observe the joint state, look up the decision, execute the behaviour. A step of CartPole
 is `env.step` of `gymnasium.make("CartPole-v1")` with its default wrappers. The second table
 compares a looked-up decision with scikit-learn's `predict_proba` on one row.
 """
@@ -78,7 +78,7 @@ def cart_pole() -> float:
 
 
 def lookup(policy: Policy) -> tuple[float, float]:
-    """Return seconds for one decision: looked up, and asked of the forest."""
+    """Return seconds for one decision: looked up, and computed by the forest."""
     import numpy as np
     from sklearn.ensemble import RandomForestClassifier
 

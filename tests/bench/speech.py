@@ -1,14 +1,14 @@
-"""What is understood of spoken commands, and what of other sounds is taken for one.
+"""How well spoken commands are understood, and which other sounds are taken for one.
 
 Run by hand: `python -m tests.bench.speech` (needs flite and festival). Voices of both say all
-phrases of the activity, other ways to ask, and other speech (see `sentences`); coughs, claps,
-knocks and tones are made here. White noise is added to whole utterances. Everything goes through
+phrases of the activity, other wordings, and other speech (see `sentences`); coughs, claps,
+knocks and tones are synthesised. White noise is added to whole utterances. Everything goes through
 the real decoder, as whole utterances.
 
 `--fit` prints the weights and shows the limits of `understanding`, from the voices of TUNED and
 every second sentence. Without it, the voices of QUOTED (other speakers) and the other sentences are
-counted. `--paper` counts the paper's mode instead, and `--answers` spoken answers: what is taken
-for yes or no, of answers and of all that is none. A synthetic voice is not a person: take the
+counted. `--paper` counts the paper's mode instead, and `--answers` spoken answers: which answers
+and which other sounds count as yes or no. A synthetic voice is not a person: take the
 differences seriously, not the last per cent.
 """
 
@@ -56,8 +56,8 @@ FESTIVAL = {"ked": "ked_diphone", "kal": "kal_diphone", "slt_hts": "cmu_us_slt_a
 TUNED = ("rms", "awb", "ked")
 QUOTED = ("slt", "slt_hts", "kal16", "kal")
 CONDITIONS = ("clean", "20", "10")  # dB of white noise below the voice
-FITTED = CONDITIONS[:2]  # at 10 dB much is wrong that one could fit to
-HISS = 8.0  # of 32,768: what a clean microphone has
+FITTED = CONDITIONS[:2]  # at 10 dB there are many errors to which a fit would adapt
+HISS = 8.0  # of 32,768: the noise of a clean microphone
 NOISES = 100
 SPEAKS = 0.25  # s of quiet before and after an utterance
 
@@ -65,7 +65,7 @@ BOOK = Phrasebook(load_activity("bingo"), load_room().placed(load_people(4)))
 
 
 def meaning(kind: str, text: str) -> tuple[str, dict[str, str]] | None:
-    """Return what an utterance commands; of other wordings only the behaviour counts."""
+    """Return an utterance's command; of other wordings only the behaviour counts."""
     if kind == "wording":
         return WORDINGS[text], {}
     if kind != "phrase":
@@ -110,7 +110,7 @@ def say(voice: str, texts: Iterable[str], folder: Path) -> None:
 
 
 def heard(path: Path, condition: str) -> bytes:
-    """Return an utterance as a microphone gives it, with noise so many dB below the voice."""
+    """Return an utterance as a microphone records it, with noise this many dB below the voice."""
     samples = np.frombuffer(read_wav(path), "<i2").astype(np.float64)
     chance = np.random.default_rng(len(samples))
     level = HISS
@@ -121,7 +121,7 @@ def heard(path: Path, condition: str) -> bytes:
 
 
 def noises(seed: int, count: int) -> list[bytes]:
-    """Make coughs, claps, knocks and tones."""
+    """Synthesise coughs, claps, knocks and tones."""
     chance = np.random.default_rng(seed)
     kinds = (_cough, _clap, _knock, _tone)
     return [kinds[number % len(kinds)](chance) for number in range(count)]
@@ -178,7 +178,7 @@ def _band(chance: np.random.Generator, length: int, low: float, high: float) -> 
 def _placed(
     chance: np.random.Generator, sounds: Sequence[Samples], least: float, most: float
 ) -> bytes:
-    """Put sounds one after the other into a quiet room."""
+    """Place sounds in turn in a quiet room."""
     at, places = 0.3, []
     for sound in sounds:
         places.append((round(at * RATE), sound))
@@ -202,7 +202,7 @@ _settings = EvidenceSettings()
 
 def _prepare(settings: EvidenceSettings) -> None:
     global _decoder, _settings
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are printed there
     _settings = settings
     _decoder = make_decoder(understanding.wanted(BOOK, settings))
 
@@ -214,7 +214,7 @@ def _decode(sound: tuple[str, str] | bytes, expecting: Expecting = "commands") -
 
 
 def texts(half: int) -> list[tuple[str, str]]:
-    """Return kind and text of what is said; of other sentences every second (half 0 or 1)."""
+    """Return kind and text of the utterances; of other sentences every second (half 0 or 1)."""
     return [
         *(("phrase", text) for text in (*BOOK.spoken(), "stop")),
         *(("wording", text) for text in list(WORDINGS)[half::2]),
@@ -261,7 +261,7 @@ def gather(
 
 
 def figures(job: Job, evidence: AcousticEvidence) -> tuple[list[float], bool] | None:
-    """Return what the likelihood of an utterance is made of, and whether it was understood."""
+    """Return the features of an utterance's likelihood, and whether it was understood."""
     text, margin = understanding.best_words(evidence, BOOK)
     found = BOOK.choices(text)
     if not found or stops(text):
@@ -292,7 +292,7 @@ def fit(decoded: Sequence[tuple[Job, AcousticEvidence]]) -> None:
 
 
 def table(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceSettings) -> None:
-    """Print what became of each kind of utterance, by condition and by voice."""
+    """Print the outcomes of each kind of utterance, by condition and by voice."""
     counts: dict[tuple[str, str, str], Counter[str]] = {}
     for (kind, voice, text, condition), evidence in decoded:
         outcome = judge(kind, text, evidence, settings)
@@ -311,10 +311,10 @@ def table(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceSet
 
 
 def judge(kind: str, text: str, evidence: AcousticEvidence, settings: EvidenceSettings) -> str:
-    """Say what became of an utterance.
+    """Return the outcome of an utterance.
 
-    right: asked about, and meant; offered: among the choices; wrong: another was asked about;
-    misled: what was meant is not among the choices; none: nothing was done.
+    right: Tangy asked about the meaning; offered: it is among the choices; wrong: Tangy asked about
+    another one; misled: the meaning is not among the choices; none: no reaction.
     """
     said = understanding.understand(evidence, BOOK, settings)
     tier = tier_of(said)
@@ -331,7 +331,7 @@ def judge(kind: str, text: str, evidence: AcousticEvidence, settings: EvidenceSe
 
 
 def answers(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceSettings) -> None:
-    """Print how many answers are taken as they were meant, and what else is taken for one."""
+    """Print how many answers are understood correctly, and which other sounds count as answers."""
     counts: dict[tuple[str, str], Counter[str]] = {}
     for (kind, _, text, condition), evidence in decoded:
         taken = understanding.answer(evidence, settings)
@@ -351,9 +351,9 @@ def answers(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceS
 
 
 async def latency(folder: Path, voices: Sequence[str], settings: EvidenceSettings) -> None:
-    """Print how long after the end of an utterance its evidence is there.
+    """Print the delay from the end of an utterance to its evidence.
 
-    The sound is given in pieces of 40 ms at the pace at which it is spoken, as a microphone does.
+    The sound arrives in pieces of 40 ms at the pace of the speech, as from a microphone.
     """
     recogniser = Recogniser()
     await recogniser.start(understanding.wanted(BOOK, settings))

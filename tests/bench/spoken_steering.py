@@ -1,8 +1,8 @@
-"""How many spoken sentences that steer a live game do so, and how much other talk does.
+"""How many spoken sentences that steer a live game are obeyed, and how much other talk is.
 
 Run by hand: `python -m tests.bench.spoken_steering` (needs flite, festival and espeak-ng). Every
 sentence of `steering.IN_GAMES` is said by some of the voices in turn; other talk is that of
-`spoken_stops`. Nothing here sets a limit: those of `understanding` were set before these sentences
+`spoken_stops`. This bench sets no limit: those of `understanding` were set before these sentences
 were written. A synthetic voice is not a person.
 """
 
@@ -24,7 +24,7 @@ from tests.bench.speech import BOOK
 from tests.bench.spoken_stops import VOICES, Said, Voices, sayings
 
 TALK = "talk"
-OTHERS = "third"  # the set whose other sentences are said
+OTHERS = "third"  # the set with the other sentences
 
 
 def main() -> None:
@@ -35,7 +35,7 @@ def main() -> None:
     options.add_argument("--show", action="store_true", help="list what went wrong")
     chosen = options.parse_args()
     decoder = make_decoder(wanted(BOOK, USUAL))
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are printed there
     texts = [(way, text) for way in IN_GAMES for text in WAYS[way]]
     said = [
         Said(way, text, VOICES[(place + 5 * number) % len(VOICES)])

@@ -1,11 +1,11 @@
-"""How many spoken sentences that stop the robot do so, and how many others.
+"""How many spoken sentences that stop the robot are obeyed, and how many others stop it.
 
 Run by hand: `python -m tests.bench.spoken_stops` (needs flite, festival and espeak-ng). Figures are
-quoted on the sentences of `stop_fresh.toml` and `stop_unseen.toml`, which had chosen and taught
-nothing then. `--set` can also be one of the sets of `stop_sentences.toml`, counted with models that
-were learnt from the others alone; the rules of `stop_sentence` know all four. Each is said by some
-of the voices, in turn. White noise, or the babble of other voices, is added to whole sentences.
-Other talk is what asks for nothing, or for something else, and holds no word of stopping.
+quoted on the sentences of `stop_fresh.toml` and `stop_unseen.toml`, which had set no limit and
+trained no model then. `--set` can also be one of the sets of `stop_sentences.toml`, with models
+trained on the others alone; the rules of `stop_sentence` know all four. Some of the voices say
+each sentence, in turn. White noise, or the babble of other voices, is added to whole sentences.
+Other talk has no request, or another request, and holds no word of stopping.
 Everything goes through the real decoder. A synthetic voice is not a person; those of espeak are the
 hardest to hear.
 """
@@ -49,7 +49,7 @@ VOICES = (
     "en-gb+f1 -p 60 -s 160",
 )
 """Of flite and festival; then of espeak-ng, with pitch and speed."""
-HISS = 8.0  # of 32,768: what a clean microphone has
+HISS = 8.0  # of 32,768: the noise of a clean microphone
 QUIET = round(0.25 * RATE)  # samples before and after a sentence
 TALK = 60  # sentences of other talk
 BABBLE = 5  # voices at once
@@ -64,7 +64,7 @@ class Said(NamedTuple):
 
 
 def sayings(read: Mapping[str, Sequence[str]], voices: int) -> Iterator[Said]:
-    """Yield what is said: each sentence of a set by so many voices, other talk by one."""
+    """Yield the utterances: each sentence of a set by several voices, other talk by one."""
     for kind in ("stops", "others"):
         for place, text in enumerate(read[kind]):
             for number in range(voices):
@@ -76,13 +76,13 @@ def sayings(read: Mapping[str, Sequence[str]], voices: int) -> Iterator[Said]:
 
 
 class Voices:
-    """Lets voices say sentences, each once, in a folder."""
+    """Synthesises each sentence once by each voice, in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
     def say(self, said: Sequence[Said]) -> None:
-        """Have everything said."""
+        """Synthesise everything."""
         for voice in FESTIVAL:
             script = [f"(voice_{FESTIVAL[voice]})"]
             for one in said:
@@ -107,7 +107,7 @@ class Voices:
         return np.frombuffer(read_wav(self._path(one)), "<i2").astype(np.float64)
 
     def heard(self, one: Said, noise: str, others: Sequence[Said]) -> bytes:
-        """Return a sentence as a microphone gives it; `noise` is clean, dB, or b and dB."""
+        """Return a sentence as a microphone records it; `noise` is clean, dB, or b and dB."""
         sound = self.samples(one)
         chance = np.random.default_rng(len(sound))
         level = float(np.sqrt(np.mean(sound**2)))
@@ -131,7 +131,7 @@ class Voices:
 
 
 def count_texts(said: Sequence[Said]) -> None:
-    """Print how many of some sentences stop as text."""
+    """Print how many of these sentences stop the robot as text."""
     of = Counter(one.kind for one in said)
     stopped = Counter(one.kind for one in said if is_stop(one.text, BOOK.game))
     print("text:", *(f"{kind} {stopped[kind]} of {of[kind]}" for kind in sorted(of)))
@@ -155,7 +155,7 @@ def main() -> None:
     texts = stop_texts(chosen.set)
     other_texts = (*other_stop_texts(chosen.set), *listened.no_stops[len(other_stop_texts()) :])
     decoder = make_decoder(replace(listened, stops=texts, no_stops=other_texts))
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are printed there
     said = list(sayings(read, chosen.voices))[:: chosen.every]
     count_texts(said)
     with tempfile.TemporaryDirectory() as folder:

@@ -1,13 +1,13 @@
-"""What becomes of a robot process that is stopped in a game: dialogs, their causes, and the base.
+"""Effects of stopping a robot's process during a game: dialogs, their causes, and the base.
 
 Run by hand: `python -m tests.bench.stalls [--times N] [--seconds S]... [--stage S]... [--load N]
 [--link-delay S] [--link-loss SHARE]`. Games are played on the bench in real time, with staff who
-clear what halts the robot, with N busy processes beside them, and over a link of that quality. The
-robot's process is stopped for so many s in each stage in turn, N times for each length: while a
-number is due, while it drives to a person who asks, and beside that person; while it speaks, waits
-for what a person does, waits for people to clear its way, turns to find its place, or waits for
-staff to answer a question. A dialog is a critical fault; other faults that are diagnosed after a
-stall are shown, too.
+clear faults that halt the robot, with N busy processes beside them, and over a link of that
+quality. The robot's process is stopped for S s in each stage in turn, N times for each length:
+while a number is due, while it drives to a person who asks, and beside that person; while it
+speaks, watches a person's response, waits for people to clear its path, turns to find its place,
+or waits for staff to answer a question. A dialog is a critical fault; other faults that are
+diagnosed after a stall are printed, too.
 """
 
 from __future__ import annotations
@@ -45,22 +45,22 @@ from tangy_tui.monitoring.fault import Diagnosed, Fault
 from tests.bench.fault_latency import teach
 from tests.bench.jitter import busy
 
-RESTS = (2.0, 6.0)  # s between two stalls, by chance
+RESTS = (2.0, 6.0)  # s between two stalls, drawn at random
 STAGES = ("facilitate", "navigate", "help")  # of the activity
 SPEAKING, WATCHING, RECOVERING, TURNING = "speaking", "watching", "recovering", "turning"
 ASKING = "asking"
 MOMENTS = (SPEAKING, WATCHING, RECOVERING, TURNING, ASKING)
-FAULTS = {RECOVERING: "path-blocked", TURNING: "carried-off"}  # which it recovers from
+FAULTS = {RECOVERING: "path-blocked", TURNING: "carried-off"}  # the faults that it recovers from
 REMEDIES = {"ask": RECOVERING, "spin": TURNING}
-COMES = 120.0  # s in which a stage has to come about
-SETTLES = 4.0  # s after a stall in which what comes of it is told
+COMES = 120.0  # s in which a stage must begin
+SETTLES = 4.0  # s after a stall in which its effects are reported
 
 
 @dataclass
 class Stall:
-    """One stall: how long it was, in which stage, the faults told after it, and what the base did.
+    """One stall: its length and stage, the faults reported after it, and the base's motion.
 
-    If it drove, `told` is after how many s it was told to stand, and `stood` after how many it did.
+    If it drove, `told` is the s until the command to stand, and `stood` the s until it stood.
     """
 
     seconds: float
@@ -80,13 +80,13 @@ class Stall:
 
 
 class WatchedBench(BenchedWorld):
-    """A bench of which another thread can tell what the robot is doing."""
+    """A bench that lets another thread see what the robot is doing."""
 
     doing = ""
     _watches = False
 
     def execute(self, action: Action) -> Outcome:
-        """Carry an action out; after a request, it watches what the person does."""
+        """Carry out an action; after a request, watch the person's response."""
         self._watches = action.behaviour.persuades and self.tracker.place in self.tracker.queue
         try:
             return super().execute(action)
@@ -109,7 +109,7 @@ class WatchedBench(BenchedWorld):
 
 
 class StalledGames:
-    """Games that another thread plays, and their events."""
+    """Games on another thread, and their events."""
 
     def __init__(self, control: GameController, world: WatchedBench) -> None:
         self.control = control
@@ -120,7 +120,7 @@ class StalledGames:
         """The stage in which the next stall is to come."""
 
     def play(self) -> None:
-        """Play games until it is over; while the process is `held` staff only look."""
+        """Play games until the bench ends; while the process is `held` staff only look."""
         game = self.control.supervision
         while not self.over.is_set():
             self.control.begin()
@@ -136,14 +136,14 @@ class StalledGames:
 
     @property
     def asked(self) -> bool:
-        """Whether the next stall is to come while a question is open."""
+        """Whether the next stall comes while a question is open."""
         return self.wanted == ASKING
 
     def come_to(self, stage: str, chance: Random) -> None:
-        """Wait until the games are in a stage, and drive where the stage has to do with driving.
+        """Wait until a game is in a stage, and until it drives if the stage involves driving.
 
-        What it needs is brought about: a person asks for help, the way is blocked, staff take over.
-        A stage that does not come about is left out: the stall says in which one it came.
+        Its cause is provided: a person asks for help, the path is blocked, staff take over.
+        A stage that does not begin is skipped: the stall records its actual stage.
         """
         world, until = self.world, time.monotonic() + COMES
         self.wanted = stage
@@ -164,7 +164,7 @@ class StalledGames:
 
     @property
     def stage(self) -> str:
-        """What the robot is doing now if a stall is wanted in it, else the activity's stage."""
+        """The robot's current action if the next stall needs it, else the activity's stage."""
         game = self.control.supervision
         if self.wanted not in MOMENTS:
             return self.world.tracker.state().situation.stage
@@ -204,7 +204,7 @@ class StalledGames:
 
 
 def spread(found: Sequence[float | None], unit: str = "s") -> str:
-    """Return how many there are, their median, 95th percentile, and most."""
+    """Return the count, median, 95th percentile, and maximum."""
     there = sorted(one for one in found if one is not None)
     if len(there) < 2:
         return f"{there} {unit}"
@@ -213,7 +213,7 @@ def spread(found: Sequence[float | None], unit: str = "s") -> str:
 
 
 def main() -> None:
-    """Play, stop, and print what came of it."""
+    """Play, stop, and print the results."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--times", type=int, default=3)
     parser.add_argument("--seconds", type=float, action="append")

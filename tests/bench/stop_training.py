@@ -1,6 +1,6 @@
-"""Learning which sentences stop the robot, with scikit-learn.
+"""Learn which sentences stop the robot, with scikit-learn.
 
-Run by hand: `python -m tests.bench.stop_training` learns them anew, and puts the model where Tangy
+Run by hand: `python -m tests.bench.stop_training` trains the model, and writes it where Tangy
 reads it. Do so after `stopping.toml`, `stop_sentences.toml` or an activity's phrases have changed.
 """
 
@@ -23,13 +23,13 @@ from tangy_tui.language.stop_likelihood import MODEL, STOP
 from tangy_tui.language.stop_phrases import game_words, other_stop_texts, stop_texts
 from tangy_tui.language.words import Words, words_of
 
-OFTEN = 6  # how many times a sentence counts at most
+OFTEN = 6  # the most times a sentence counts
 OWN = 4  # how many times each phrase of an activity counts
-EVERY = 6  # every so many sentences are taken that ask for an activity's behaviours
+EVERY = 6  # one in this many of the sentences that ask for an activity's behaviours is used
 
 
 def stop_examples(without: str = "") -> tuple[Example, ...]:
-    """Return the sentences, in a fixed order; `without` is a written set that is left out."""
+    """Return the sentences, in a fixed order, without the written set `without`."""
     found: list[Example] = []
     for texts, meant in ((stop_texts(without), STOP), (other_stop_texts(without), "")):
         for text, times in Counter(texts).items():
@@ -44,12 +44,12 @@ def stop_examples(without: str = "") -> tuple[Example, ...]:
 
 
 def digest_of(examples: Iterable[Example]) -> str:
-    """Return the digest that says which sentences a model was learnt from."""
+    """Return the digest that identifies a model's training sentences."""
     return hashlib.sha256(json.dumps(list(examples)).encode()).hexdigest()[:32]
 
 
 def main() -> None:
-    """Train the model of stops again."""
+    """Train the model of stops."""
     examples = stop_examples()
     model = json.loads(train(examples).to_json())
     told = json.dumps({"made_of": digest_of(examples), **model}, separators=(",", ":"))

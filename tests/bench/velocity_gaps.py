@@ -1,9 +1,9 @@
-"""How long after a velocity command the next one comes: how short its time to live may be.
+"""Gaps between velocity commands: the shortest possible time to live of a command.
 
 Run by hand: `python -m tests.bench.velocity_gaps [--seconds N] [--load N]`. A robot drives up and
-down on the bench in real time, with so many busy processes beside it. What arrives at its base is
+down on the bench in real time, with N busy processes beside it. The arrivals at its base are
 recorded; a gap counts from a command to drive to the next command of any kind. A command that
-expires sooner than the next one comes makes the robot stutter.
+expires before the next one comes makes the robot stutter.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ LIVES = (0.1, 0.15, 0.2, 0.25, 0.3, 0.5)  # s
 
 
 def gaps(arrivals: list[tuple[float, bool]]) -> list[float]:
-    """Return the s from each command to drive to the next; each arrival says whether it is one."""
+    """Return the s from each command to drive to the next; each arrival says whether it drives."""
     return [after - at for (at, drives), (after, _) in pairwise(arrivals) if drives]
 
 
 async def listen(url: str, seconds: float) -> list[tuple[float, bool]]:
-    """Return when each velocity command arrived, and whether it says to drive."""
+    """Return when each velocity command arrived, and whether it drives."""
     arrivals: list[tuple[float, bool]] = []
 
     def hear(message: Message) -> None:

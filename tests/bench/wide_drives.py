@@ -1,9 +1,9 @@
-"""How a wide robot, its scanner ahead of the middle and turned, drives in a room of walls.
+"""Drives of a wide robot, its scanner ahead of the middle and turned, in a room of walls.
 
 Run by hand: `python -m tests.bench.wide_drives --drives 100`. The robot is .8 by .6 m, its scanner
-.25 m ahead and turned by 10 degrees; the round one of .25 m is driven on the same ways beside it.
-Nobody is there. A touch is a point of its edge beyond a wall, or over the table. Nothing was a real
-robot.
+.25 m ahead and turned by 10 degrees; a round one of .25 m drives the same paths for comparison.
+Nobody is there. A touch is a point of its edge beyond a wall, or over the table. No real robot
+took part.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ WIDE = replace(MotionLimits(), radius=0.5, corners=CORNERS)
 ROUND = MotionLimits()
 ASIDE = Pose(0.25, 0.0, radians(10))
 LONGEST = 120.0  # s
-FREE = 0.6  # metres that a start and a goal are off all that is on the map
+FREE = 0.6  # metres between a start or a goal and everything on the map
 
 
 @dataclass(frozen=True)
 class Driven:
-    """One drive: whether it arrived and touched anything, and how far off it thought to be, in m.
+    """One drive: whether it arrived and touched anything, and the robot's own errors of its place.
 
-    `off` are the errors of its place, one a tick.
+    `off` are these errors in m, one a tick.
     """
 
     arrived: bool
@@ -47,7 +47,7 @@ class Driven:
 
 
 def way(rng: Generator) -> tuple[Pose, Pose]:
-    """Draw a start and a goal at which the wide robot has room, 3 m apart at least."""
+    """Draw a start and a goal with room for the wide robot, 3 m apart at least."""
     costs = inflate(MAP, None, RADIUS + FREE - 0.32)
     while True:
         x, gx = rng.uniform(0.5, ROOM.width - 0.5, 2)
@@ -57,7 +57,7 @@ def way(rng: Generator) -> tuple[Pose, Pose]:
 
 
 def drive(number: int, seed: int, limits: MotionLimits, laser: Pose) -> Driven:
-    """Drive one way with a robot of some body."""
+    """Drive one path with a robot of some body."""
     rng = np.random.default_rng([seed, 2000, number])
     true, goal = way(rng)
     navigator = Navigator(MAP, rng, true, limits=limits, laser=laser)
@@ -77,7 +77,7 @@ def drive(number: int, seed: int, limits: MotionLimits, laser: Pose) -> Driven:
 
 
 def touches(pose: Pose, limits: MotionLimits) -> bool:
-    """Say whether any point of a robot's edge is beyond a wall or over the table."""
+    """Return whether any point of a robot's edge is beyond a wall or over the table."""
     if limits.corners:
         ends = np.array([*limits.corners, limits.corners[0]])
         share = np.linspace(0, 1, 17)[:, None]
@@ -92,7 +92,7 @@ def touches(pose: Pose, limits: MotionLimits) -> bool:
 
 
 def row(name: str, found: Sequence[Driven]) -> str:
-    """Sum drives up in a line."""
+    """Return a row that sums up drives."""
     off = np.concatenate([one.off for one in found])
     return (
         f"{name:<6} touched {sum(one.touched for one in found)} of {len(found)}; arrived "

