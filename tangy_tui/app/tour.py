@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import Enum
 
-from tangy_tui.learning.teaching_events import Executed, TeachingEvent
+from tangy_tui.learning.teaching_events import Executed, StepUndone, TeachingEvent
 from tangy_tui.learning.verification import Asked, Offered
 
 
@@ -16,6 +16,7 @@ class TourStop(Enum):
     COMMAND = "command"
     QUESTION = "question"
     STEP = "step"
+    UNDONE = "undone"
     PEOPLE = "people"
     COACH = "coach"
 
@@ -23,6 +24,7 @@ class TourStop(Enum):
 _ON = {
     TourStop.ROOM: TourStop.COMMAND,
     TourStop.STEP: TourStop.PEOPLE,
+    TourStop.UNDONE: TourStop.PEOPLE,
     TourStop.PEOPLE: TourStop.COACH,
     TourStop.COACH: None,
 }
@@ -61,6 +63,8 @@ class Tour:
             if self.at not in _BEFORE_THE_STEP:
                 if isinstance(event, Executed):  # a teacher who teaches on needs no Enter
                     self.go_on()
+                elif isinstance(event, StepUndone) and self.at is TourStop.STEP:
+                    self.at = TourStop.UNDONE
             elif isinstance(event, Executed):
                 self.at = TourStop.STEP
             elif isinstance(event, Asked | Offered):

@@ -40,6 +40,8 @@ def tour_words(
                 "That is your first step; see it under Steps. {undo} takes a step back, {redo} "
                 "brings it back. Enter goes on."
             )
+        case TourStop.UNDONE:
+            return "The step is gone from Steps. {redo} brings it back. Enter goes on."
         case TourStop.PEOPLE if not visits:
             return f"{SEATED} {{undo}} takes back more than one step. Enter goes on."
         case TourStop.PEOPLE:
@@ -67,6 +69,8 @@ def tour_line(stop: TourStop, teacher: str, title: str, phrase: str, *, visits: 
             return "Tangy does nothing before you say yes. Read the question, and answer it."
         case TourStop.STEP:
             return "That is your first step. The word undo takes it back, redo brings it back."
+        case TourStop.UNDONE:
+            return "The step is taken back. The word redo brings it back."
         case TourStop.PEOPLE if not visits:
             return f"{SEATED} The line that begins with Now tells you."
         case TourStop.PEOPLE:

@@ -7,6 +7,7 @@ import asyncio
 from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import TeachingLines
+from tangy_tui.learning.teaching_events import Redo, Undo
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.monitoring.attention import goes_to_people
@@ -51,6 +52,17 @@ def test_each_further_step_advances_the_tour_like_enter(workspace: Workspace) ->
         assert tour.at is stop
 
 
+def test_a_first_step_that_is_undone_is_no_longer_told_of(workspace: Workspace) -> None:
+    tour, teaching = begun(workspace)
+    for command in (Say(teaching.sayable[0]), Reply(yes=True), Undo()):
+        tour.follow(teaching.apply(command))
+    assert (tour.at, tour.enter_goes_on) == (TourStop.UNDONE, True)
+    assert "see it" not in tour_words(TourStop.UNDONE, "Ada", "Bingo", "call number")
+    tour.follow(teaching.apply(Redo()))
+    gone_on = tour.at
+    assert gone_on is TourStop.PEOPLE
+
+
 def test_a_skipped_tour_never_resumes(workspace: Workspace) -> None:
     tour, teaching = begun(workspace)
     tour.skip()
@@ -89,7 +101,7 @@ def test_without_visits_the_tour_sends_the_robot_to_nobody() -> None:
 
 def test_the_tour_by_lines_teaches_one_step(workspace: Workspace) -> None:
     said = lines(workspace, "", "greet everyone", "y", "", "", "", "call number", "y")
-    places = [place(said, stop) for stop in TourStop]
+    places = [place(said, stop) for stop in TourStop if stop is not TourStop.UNDONE]
     assert places == sorted(places)
 
 
