@@ -36,8 +36,12 @@ class Participants:
     _sample: tuple[Person, ...]
 
     def read_people(self) -> None:
-        """Reload the people: names, pronunciations, voices, seats."""
-        self.people = self.room.placed(known_people(self.store, self._sample))
+        """Reload the people: names, pronunciations, voices, seats; a team has a number instead."""
+        known = known_people(self.store, self._sample)
+        if self.activity.teams:
+            self.people = tuple(replace(t, seats=(f"team {n}",)) for n, t in enumerate(known, 1))
+        else:
+            self.people = self.room.placed(known)
 
     def register(self, users: int = REGISTERED) -> None:
         """Let the first `users` registered people take part, or all of them."""

@@ -172,6 +172,15 @@ def test_teams_cannot_be_changed_in_the_setup(data_folder: Path) -> None:
     workspace.close()
 
 
+def test_a_team_is_called_by_its_number_and_no_seat(data_folder: Path) -> None:
+    workspace = Workspace(data_folder, activity="team-trivia")
+    assert [team.seats for team in workspace.people] == [("team 1",), ("team 2",)]
+    begun = workspace.teaching("Ada", 1).phrasebook.complete("give a hint to ")
+    assert "give a hint to team 1" in begun
+    assert not any("seat" in phrase for phrase in begun)
+    workspace.close()
+
+
 def test_a_guest_is_forgotten_after_the_day(data_folder: Path) -> None:
     now = [datetime(2026, 5, 1, 10, tzinfo=UTC)]
     workspace = Workspace(data_folder, now=lambda: now[0])
