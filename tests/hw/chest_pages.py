@@ -1,4 +1,4 @@
-"""What tests ask of the chest screen's page, and how a paired tablet shows that it is one."""
+"""Requests of tests to the chest screen's page, and the header of a paired tablet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ async def ask(
     host: str = "127.0.0.1:80",
     body: bytes = b"",
 ) -> bytes:
-    """Send one request, and return all that is answered."""
+    """Send one request, and return the whole response."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     head = f"{method} {target} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n".encode()
     length = b"" if b"Content-Length" in more else b"Content-Length: %d\r\n" % len(body)

@@ -15,7 +15,7 @@ Way = list[tuple[float, float]]
 
 
 class Slip(NamedTuple):
-    """From which share of the way on, and for which share of it, wheels count nothing."""
+    """A stretch on which the wheels count nothing: its begin and length as shares of the way."""
 
     begins: float
     lasts: float
@@ -45,7 +45,7 @@ def two_rings(side: float, width: float) -> tuple[Segments, Way]:
 
 
 def cluttered(side: float, width: float, seed: int) -> tuple[Segments, Way]:
-    """Return a square corridor with things along its outer walls, and a way around it."""
+    """Return a square corridor with objects along its outer walls, and a way around it."""
     walls, way = ring(side, width, 4.0)
     rng = np.random.default_rng(seed + 1000)
     deep, boxes = 0.25, []
@@ -62,7 +62,7 @@ def cluttered(side: float, width: float, seed: int) -> tuple[Segments, Way]:
 
 
 def logged(walls: Segments, way: Way, seed: int, slip: Slip | None = None) -> list[PlacedScan]:
-    """Drive along a way; return the scans at the poses that the wheels counted."""
+    """Drive along a way; return the scans at the poses from the wheels' odometry."""
     return [one for one, _ in driven_log(walls, way, seed, slip)]
 
 
@@ -75,7 +75,7 @@ def driven_log(
     scale: float = 1.01,
     noise: float = 0.03,
 ) -> list[tuple[PlacedScan, Pose]]:
-    """Drive along a way; return scans at the poses that the wheels counted, and the true ones."""
+    """Drive along a way; return scans at the wheels' poses, and the true poses."""
     rng = np.random.default_rng(seed)
     pose = start = Pose(*way[0], 0.0)
     wheels, commands, scans = Wheels(rng, scale, noise), tour(way), []

@@ -1,4 +1,4 @@
-"""A robot process that is none: what it is asked for is noted, and answered at once."""
+"""A fake robot process: it records requests, and answers them at once."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ BINGO = load_activity("bingo")
 
 @dataclass
 class LaidCard:
-    """A card on the table: its number, its marks, and whether it is seen, and surely.
+    """A card on the table: its number, its marks, and whether it is seen and identified.
 
-    `others` are the cards that are in sight beside it.
+    `others` are other cards in sight.
     """
 
     number: int
@@ -37,7 +37,7 @@ class LaidCard:
 
 
 class FakeLink:
-    """Stands in for `RobotLink`: `done` is what the robot was asked for, in order."""
+    """Stands in for `RobotLink`: `done` are the requests to the robot, in order."""
 
     def __init__(self, people: tuple[str, ...]) -> None:
         self.setup = RobotSetup("tangy", "bingo", people)
@@ -90,7 +90,7 @@ class FakeLink:
             return answer
         if do == "cancel" and self._doing is not None:
             self._called_off = what["why"]
-            self.slow[self._doing[0]] = min(2, self.slow[self._doing[0]])  # it takes a moment
+            self.slow[self._doing[0]] = min(2, self.slow[self._doing[0]])  # the task needs a moment
         if do in self.slow:
             self._doing = do, what, answer
         else:

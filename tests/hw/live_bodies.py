@@ -1,4 +1,4 @@
-"""Bodies of live robots for tests: devices that keep what they were told, and a body of them."""
+"""Bodies of live robots for tests: devices that record their commands, and a body of them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HERE = Pose(2.0, 1.0, 0.0)
 
 
 class ToldDevice:
-    """A device that is well, or as a test says; `told` are the commands of the whole body."""
+    """A healthy device, or one with a given fault; `told` are the commands of the whole body."""
 
     def __init__(self, name: str, told: list[Any]) -> None:
         self.name, self.told = name, told
@@ -56,7 +56,7 @@ class ToldBase(ToldDevice):
 
 
 class ToldLaser(ToldDevice):
-    """A scanner that sees nothing within reach."""
+    """A scanner without a return within its range."""
 
     scan = Stamped(Scan(-1.5, 0.1, np.full(31, np.inf), 30.0), 0.0, 1)
 
@@ -85,7 +85,7 @@ class ToldArms(ToldDevice):
 
 
 class ToldVoice(ToldDevice):
-    """A voice that speaks until it is hushed; or that cannot even be hushed."""
+    """A voice that speaks until it is hushed, or cannot even be hushed."""
 
     def __init__(self, name: str, told: list[Any]) -> None:
         super().__init__(name, told)

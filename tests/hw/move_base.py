@@ -10,7 +10,7 @@ from tangy_sim.servers.rosbridge_server import RosbridgeServer
 
 
 class MoveBase:
-    """move_base at the other end: its goals are taken, and end as a test says."""
+    """move_base at the other end: it accepts goals, and a test decides how they end."""
 
     def __init__(self, server: RosbridgeServer) -> None:
         self.server = server
@@ -49,5 +49,5 @@ class MoveBase:
         self.server.publish("/amcl_pose", "", {"pose": where})
 
     def idle(self) -> None:
-        """Say that it lives, and has no goal."""
+        """Publish that it runs, without a goal."""
         self.server.publish("/move_base/status", "", {"status_list": []})

@@ -1,4 +1,4 @@
-"""A robot that a navigator drives through a room, in a time of its own."""
+"""A robot that a navigator drives through a room, in simulated time."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def at_seat(place: int) -> Pose:
 
 
 class DrivenRobot:
-    """A robot in the room, in a time of its own."""
+    """A robot in the room, in simulated time."""
 
     def __init__(self, *boxes: Box, seed: int = 0) -> None:
         self.rng = np.random.default_rng(seed)

@@ -1,8 +1,8 @@
-"""ONNX files made by hand, small and simple, in the place of models that nobody may ship here.
+"""Small ONNX files made by hand, in place of models that may not be shipped here.
 
-`recogniser_file` takes a face of 112 x 112 pixels, as SFace does, and gives the mean colours of
-its 49 squares: no good at faces, but a model that OpenCV loads and runs. `finder_file` has the
-inputs and outputs of YuNet, and sees a face wherever it is bright green.
+`recogniser_file` takes a face of 112 x 112 pixels, as SFace does, and returns the mean colours of
+its 49 squares: poor at faces, but a model that OpenCV loads and runs. `finder_file` has the
+inputs and outputs of YuNet, and finds a face at every bright green spot.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def _node(kind: str, inputs: Sequence[str], outputs: Sequence[str], **ints: list
 
 
 def _tensor(name: str, sizes: Sequence[int], values: Sequence[float] | None) -> bytes:
-    """Make an initialiser of floats; without values one of whole numbers: the sizes."""
+    """Make an initialiser of floats; without values one of integers: the sizes."""
     if values is None:
         raw, kind, dims = struct.pack(f"<{len(sizes)}q", *sizes), 7, [len(sizes)]
     else:

@@ -1,4 +1,4 @@
-"""Pictures of made-up rooms for the tests and benches of cameras: no two seeds look alike."""
+"""Pictures of random rooms for the tests and benches of cameras: no two seeds look alike."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 Image: TypeAlias = NDArray[np.uint8]
 
-WIDE = 16  # pixels of blur from which on a picture is made smaller for it
+WIDE = 16  # pixels of blur from which the picture is scaled down first
 
 
 def room(seed: int, width: int = 1280, height: int = 720) -> Image:
-    """Draw a room: a wall, things on it, people, a table, a card or two on that."""
+    """Draw a room: a wall with objects, people, a table with a card or two."""
     rng = np.random.default_rng(seed)
     image = np.empty((720, 1280, 3), np.uint8)
     shade = np.linspace(rng.uniform(0.7, 1), rng.uniform(0.7, 1), 1280)[None, :, None]
@@ -69,9 +69,9 @@ def seen(
     noise: float = 3.0,
     quality: int | None = None,
 ) -> Image:
-    """Return a picture as a camera sees it: with so much light, blur (pixels), noise, JPEG."""
+    """Return a picture as a camera sees it, with a given light, blur (pixels), noise, JPEG."""
     values: Any = image
-    if blur > WIDE:  # as good, and in a hundredth of the time
+    if blur > WIDE:  # the same result, in a hundredth of the time
         small = cv2.resize(image, None, fx=1 / WIDE, fy=1 / WIDE, interpolation=cv2.INTER_AREA)
         small = cv2.GaussianBlur(small, (0, 0), blur / WIDE)
         values = cv2.resize(small, image.shape[1::-1], interpolation=cv2.INTER_CUBIC)

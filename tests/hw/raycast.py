@@ -1,4 +1,4 @@
-"""A laser and wheels for tests: rays against segments, and odometry with errors that are known."""
+"""A laser and wheels for tests: rays against segments, and odometry with known errors."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def sides(*boxes: tuple[float, float, float, float]) -> Segments:
 
 
 def room_sides(room: Room, *more: tuple[float, float, float, float]) -> Segments:
-    """Return the walls of a room, the legs of its table and of all that sit, and more boxes.
+    """Return the walls of a room, the legs of its table and of everybody seated, and more boxes.
 
     A leg is a cross of 6 cm, which casts the same shadow as a round one with half the sides.
     """
@@ -56,7 +56,7 @@ def look(
     farthest: float = 30.0,
     noise: float = 0.01,
 ) -> Scan:
-    """Return what a laser at a pose sees; without `rng` it measures exactly."""
+    """Return the scan of a laser at a pose; without `rng` it is exact."""
     first, step = -angle / 2, angle / (beams - 1)
     headings = pose.heading + first + step * np.arange(beams)
     dx, dy = np.cos(headings)[:, None], np.sin(headings)[:, None]
@@ -83,14 +83,14 @@ def driven(pose: Pose, twist: Twist, dt: float) -> Pose:
 
 
 class Wheels:
-    """Counts a way with errors: of scale, and random ones in proportion."""
+    """Odometry with errors: of scale, and random ones in proportion."""
 
     def __init__(self, rng: Generator, scale: float = 1.02, noise: float = 0.05) -> None:
         self.pose = Pose(0.0, 0.0, 0.0)
         self._rng, self._scale, self._noise = rng, scale, noise
 
     def turn(self, twist: Twist, dt: float) -> Pose:
-        """Count that it was driven so, and return the pose that was counted."""
+        """Count this motion, and return the pose by odometry."""
         forward, turn = (1 + self._rng.normal(0, self._noise, 2)) * self._scale
         self.pose = driven(self.pose, Twist(twist.forward * forward, twist.turn * turn), dt)
         return self.pose

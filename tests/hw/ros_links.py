@@ -1,4 +1,4 @@
-"""What tests of the link by rosbridge begin with: a server, a link to it, a time that is set."""
+"""Fixtures for tests of the link by rosbridge: a server, a link to it, a clock that tests set."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.support.waiting import until
 
-SOON = 5  # s within which what must happen at once has happened on any machine
+SOON = 5  # s in which an immediate event has happened on any machine
 
 
 class Now:
-    """A time that tests set."""
+    """A clock that tests set."""
 
     def __init__(self) -> None:
         self.time = 100.0
@@ -43,12 +43,12 @@ async def linked(**settings: Any) -> AsyncIterator[tuple[RosbridgeServer, Rosbri
 
 
 async def soon(thing: Awaitable[Any]) -> Any:
-    """Wait for what must happen at once."""
+    """Wait for an immediate event."""
     return await asyncio.wait_for(thing, SOON)
 
 
 async def done(_: Any) -> dict[str, Any]:
-    """Be a service that does nothing."""
+    """Serve a service that does nothing."""
     return {"done": True}
 
 

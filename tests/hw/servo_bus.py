@@ -1,6 +1,6 @@
-"""A bus of servos for tests: protocol 2.0 of Dynamixel on a pseudo-terminal, of the tests' own.
+"""A bus of servos for tests: protocol 2.0 of Dynamixel on a pseudo-terminal.
 
-Servos have the control table of the X series. They are at their goal at once, if they have torque.
+Servos have the control table of the X series. With torque, they reach their goal at once.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ ALERT = 0x80
 
 
 def checksum(data: bytes) -> int:
-    """Return the CRC-16 of a packet: polynomial 0x8005, begun with 0."""
+    """Return the CRC-16 of a packet: polynomial 0x8005, initial value 0."""
     register = 0
     for byte in data:
         register ^= byte << 8
@@ -31,7 +31,7 @@ def checksum(data: bytes) -> int:
 
 @dataclass
 class Servo:
-    """One servo: its memory, whether it is there, sticks, or has a fault that stays."""
+    """One servo: its memory, whether it is there, stuck, or has a lasting fault."""
 
     memory: bytearray = field(default_factory=lambda: bytearray(256))
     there: bool = True
@@ -65,7 +65,7 @@ class Servo:
     @error.setter
     def error(self, bits: int) -> None:
         self.memory[70] = bits
-        self.memory[64] = 0  # a servo with an error lets go
+        self.memory[64] = 0  # a servo with an error turns its torque off
 
     def write(self, address: int, data: bytes) -> None:
         self.memory[address : address + len(data)] = data
@@ -76,7 +76,7 @@ class Servo:
 
 
 class ServoBus:
-    """Servos by their id, behind `path`."""
+    """Servos by their id, on the port `path`."""
 
     def __init__(self, *ids: int) -> None:
         self.servos = {number: Servo() for number in ids}
@@ -97,7 +97,7 @@ class ServoBus:
         self.unplug()
 
     def unplug(self) -> None:
-        """Let the port vanish."""
+        """Remove the port."""
         if self._thread.is_alive():
             os.write(self._unplug, b".")
             self._thread.join()
@@ -105,7 +105,7 @@ class ServoBus:
                 os.close(one)
 
     def _serve(self) -> None:
-        """Answer, in a thread of its own: a bus waits for nobody's event loop."""
+        """Answer on a separate thread: a bus waits for nobody's event loop."""
         while self._unplugged not in (ready := select([self._master, self._unplugged], [], [])[0]):
             if ready:
                 self._hear(os.read(self._master, 4096))

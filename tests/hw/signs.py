@@ -1,4 +1,4 @@
-"""Infrared pictures of a table at which people turn up shining triangles, with what is true."""
+"""Infrared pictures of a table at which people hold up shining triangles, with the truth."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ Outline = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Scene:
-    """One picture and who asks in it: the numbers of the seats, from 0; `since` how many pictures.
+    """One picture and who asks in it: the numbers of the seats, from 0; `since` is in pictures.
 
-    `hidden` are those of whose sign a hand covers a part.
+    `hidden` are those whose sign is partly covered by a hand.
     """
 
     image: Image
@@ -37,7 +37,7 @@ class Scene:
 
 
 def in_picture(point: Point) -> Point:
-    """Return where a place at the table, in metres, is in the picture."""
+    """Return a place on the table, in metres, as a point in the picture."""
     table, corners = np.array(TABLE, np.float32), np.array(CORNERS, np.float32)
     there = cv2.getPerspectiveTransform(table, corners)
     x, y, w = there @ (point[0], point[1], 1.0)
@@ -45,7 +45,7 @@ def in_picture(point: Point) -> Point:
 
 
 class Things:
-    """Draws what shines."""
+    """Draws shining objects."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
@@ -60,7 +60,7 @@ class Things:
         return moved
 
     def other(self, image: Image, kind: str, at: Point, size: float, light: int) -> None:
-        """Draw something else that shines."""
+        """Draw another shining object."""
         rng, half = self._rng, size / 2
         turn = float(rng.uniform(0, 180))
         box = {"square": (1.0, rng.uniform(0.75, 1)), "bar": (1.0, rng.uniform(0.15, 0.5))}
@@ -101,7 +101,7 @@ def _at(point: Point) -> tuple[int, int]:
 def sequence(
     seed: int, frames: int = 12, sizes: tuple[float, float] = (14, 50), *, signs: bool = True
 ) -> Iterator[Scene]:
-    """Film the table: who asks does so from the first picture on."""
+    """Film the table: people who ask do so from the first picture on."""
     rng = np.random.default_rng(seed)
     things = Things(rng)
     still = _background(rng)
@@ -138,7 +138,7 @@ def sequence(
         for seat, corners, light in drawn:
             moved = corners + rng.normal(0, 0.7, 2)
             mirror = moved * (1, -1) + (0, 2 * moved[:, 1].max() + 2)
-            _fill(image, mirror, max(20, light // 5))  # in the polished table
+            _fill(image, mirror, max(20, light // 5))  # its reflection in the polished table
             _fill(image, moved, light)
             if seat in hand and number % 4 < 2:
                 hidden.add(seat)

@@ -1,4 +1,4 @@
-"""Stand-ins for what speaks: a synthesiser and players that are shell scripts, and a clock."""
+"""Stand-ins for speech: a synthesiser and players that are shell scripts, and a clock."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ esac"""
 
 
 def program(path: Path, does: str) -> Path:
-    """Write a shell script that stands for a program."""
+    """Write a shell script in the place of a program."""
     path.parent.mkdir(exist_ok=True)
     path.touch(mode=0o755)
     path.write_text(f"#!/bin/sh\n{does}\n", encoding="utf-8")
@@ -32,7 +32,7 @@ def program(path: Path, does: str) -> Path:
 
 
 def from_pipe(seconds: float, rate: int = 22_050) -> bytes:
-    """Make a WAV as espeak-ng writes it to a pipe: it cannot know how long it will be."""
+    """Make a WAV as espeak-ng writes it to a pipe: without its length, which is not known yet."""
     samples = bytes(2 * round(seconds * rate))
     form = struct.pack("<HHIIHH", 1, 1, rate, 2 * rate, 2, 16)
     head = b"RIFF" + struct.pack("<I", 0x7FFFF024) + b"WAVEfmt " + struct.pack("<I", 16)
@@ -56,7 +56,7 @@ class Speaker:
 
     @property
     def asked(self) -> list[str]:
-        """The arguments of each text that was made."""
+        """The arguments of each synthesised text."""
         return self._read("asked")
 
     @property
@@ -70,7 +70,7 @@ class Speaker:
 
 
 class Clock:
-    """Time that passes when a test says so."""
+    """A clock that tests advance."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -78,20 +78,20 @@ class Clock:
         self._slept = asyncio.Event()
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until so much of this time has passed."""
+        """Wait until the clock has advanced this far."""
         waiting: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         heapq.heappush(self._sleepers, (self.now + seconds, id(waiting), waiting))
         self._slept.set()
         await waiting
 
     async def somebody_sleeps(self) -> None:
-        """Wait until somebody waits for this time to pass."""
+        """Wait until a task sleeps by this clock."""
         while not any(not waiting.done() for _, _, waiting in self._sleepers):
             self._slept.clear()
             await self._slept.wait()
 
     def pass_by(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance the clock."""
         self.now += seconds
         while self._sleepers and self._sleepers[0][0] <= self.now + 1e-9:
             _, _, waiting = heapq.heappop(self._sleepers)

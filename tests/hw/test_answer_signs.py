@@ -84,7 +84,7 @@ def test_confidence_drops_while_a_sign_changes_its_letter() -> None:
 
 def test_strips_circles_and_radiators_are_not_read_as_signs() -> None:
     image = np.full((240, 320), 30, np.uint8)
-    cv2.rectangle(image, (60, 120), (90, 126), 220, -1)  # one strip: the edge of something
+    cv2.rectangle(image, (60, 120), (90, 126), 220, -1)  # one strip: an edge of an object
     cv2.circle(image, (160, 120), 9, 220, -1)
     for number in range(7):  # a radiator
         cv2.rectangle(image, (220, 90 + 11 * number), (240, 94 + 11 * number), 220, -1)

@@ -1,4 +1,4 @@
-"""How often a second data comes."""
+"""The rate of arriving data, in 1/s."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A body as a robot's file describes it: read strictly, and driven as large as it is."""
+"""A body in a robot's file: strictly checked, and driven with its true size."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class TestGuard:
 
 
 def edge(pose: Pose) -> Floats:
-    """Return points round the robot, 5 cm apart at most, where it stands."""
+    """Return points round the robot's edge, 5 cm apart at most, at its pose."""
     ends = np.array([*CORNERS, CORNERS[0]])
     sides = [a + np.linspace(0, 1, 17)[:, None] * (b - a)
              for a, b in pairwise(ends)]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Calling a person: by a command or an address; what was handed over is not answered yet."""
+"""Calling a person by a command or an address; a delivered call is not answered yet."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MESSAGE = {"text": "It stands still.", "for": "expert"}
 
 
 def news(contact: Contact, seconds: float = 20.0) -> list[CallNews]:
-    """Call somebody, and return what became of it."""
+    """Call a person, and return the reports."""
     told: list[CallNews] = []
     call(contact, MESSAGE, seconds, told.append)
     return told
@@ -57,7 +57,7 @@ class TestCommand:
 
 @contextmanager
 def address(reply: bytes, status: int = 200) -> Iterator[tuple[str, list[bytes]]]:
-    """Serve an address on this machine, and keep what is posted to it."""
+    """Serve an address on this machine, and record the posts to it."""
     posted: list[bytes] = []
 
     class Handler(BaseHTTPRequestHandler):

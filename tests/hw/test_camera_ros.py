@@ -44,7 +44,7 @@ class TestPictures:
             server.publish(TOPIC, "sensor_msgs/CompressedImage", picture(brightness))
             image = await soon(asyncio.to_thread(grabber.read))
             assert image.shape == (48, 64, 3) and abs(int(image.mean()) - brightness) < 4
-            await asyncio.sleep(0.07)  # pictures are asked for no more often
+            await asyncio.sleep(0.07)  # pictures are requested no more often
         await server.close()
         with pytest.raises(NoFrame):
             await asyncio.to_thread(grabber.read)

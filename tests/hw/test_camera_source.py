@@ -1,4 +1,4 @@
-"""Cameras by name, and what is refused."""
+"""Cameras by name, and refused names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What state a camera is said to be in, and when, on a clock of the test's own."""
+"""The reported state of a camera, and its delay, on the test's clock."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_profiles.robot import load_robot
 from tests.hw.pictures import Image, room, seen
 
 RATE = 10
-NAMED = 2.0  # s in which a state has to be named, and its end
+NAMED = 2.0  # s in which a state must be reported, and its end
 FINE = Look(0, 0.0, 0.5, 0.2, 0.5, 0, 640, 480)
 ILL: dict[State, Look] = {
     "COVERED": FINE._replace(brightness=0.02, contrast=0.01, sharpness=None),
@@ -24,7 +24,7 @@ ILL: dict[State, Look] = {
 
 
 class Film:
-    """Shows looks to a watch, ten a second, and notes when its state changes."""
+    """Feeds pictures to a watch, ten a second, and records the changes of its state."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -159,7 +159,7 @@ class TestReadings:
 
     def test_the_rate_counts_sequence_numbers_but_not_in_folders(self) -> None:
         watch, folder = CameraWatch(0.0), CameraWatch(0.0, each=True)
-        for number in range(16):  # every third is looked at, of 15 in a second
+        for number in range(16):  # the watch looks at every third, of 15 per second
             for one in (watch, folder):
                 one.saw(FINE._replace(seq=3 * number, stamp=number / 5))
         assert watch.at(3.0).reading("camera").rate == pytest.approx(15)
@@ -217,7 +217,7 @@ class TestMeasures:
 
 
 def film_of(seed: int) -> Iterator[tuple[str, Image]]:
-    """Film a pan, a still room, and lights that are dimmed: half a minute that stands for ten."""
+    """Film a pan, a still room, and lights that are dimmed: half a minute in place of ten."""
     rng = np.random.default_rng(seed)
     wide = np.hstack([room(seed, 320, 180), room(seed + 1, 320, 180)])
     for number in range(8 * RATE):

@@ -34,7 +34,7 @@ def test_the_context_of_a_cell_includes_a_hand_beside_it() -> None:
     near = {6, 7, 8, 11, 13, 16, 17, 18}
     assert {int(cell) for cell in np.flatnonzero(told["near hidden most"] > 0.9)} == near
     assert set(np.flatnonzero(told["beside hidden most"] > 0.9)) == {7, 11, 13, 17}
-    assert told["any hidden"][12] < 0.1 < told["any hidden"][0]  # not of itself
+    assert told["any hidden"][12] < 0.1 < told["any hidden"][0]  # it does not count itself
 
 
 def test_a_cell_is_compared_with_chips_and_paper_of_its_card() -> None:
@@ -54,7 +54,7 @@ def test_a_finger_reaches_beyond_its_cell_and_a_chip_does_not() -> None:
     tones[..., 0] = 1.0  # paper
     skin = np.array([0.6, 0.25, -0.1], np.float32)
     tones[np.hypot(v - 40, u - 20) < 6] = skin
-    tones[(np.abs(u - 60) < 6) & (v < 46)] = skin  # comes from above
+    tones[(np.abs(u - 60) < 6) & (v < 46)] = skin  # it comes from above
     y, x = np.array([40, 40]), np.array([20, 60])
     columns = same_ways(tones, y, x, np.stack([skin, skin]), 16)
     told = dict(zip(REACHING, np.array(columns), strict=True))

@@ -1,4 +1,4 @@
-"""A mark that is unlike the card's other marks is hidden, and no mark."""
+"""A mark that is unlike the card's other marks counts as hidden, not as a mark."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def doubted(
     marks: Mapping[int, Cell],
     others: Mapping[int, tuple[float, float, float]] | None = None,
 ) -> set[int]:
-    """Return which of these marks are doubted; the other cells are bare, unless it is said."""
+    """Return which of these marks are doubted; the other cells are bare by default."""
     rows = np.zeros((25, len(NAMES)), np.float32)
     parts = np.array([UNMARKED] * 25, np.float32)
     for cell, features in marks.items():
@@ -68,7 +68,7 @@ def test_dark_numbers_among_many_unsure_cells_are_hidden() -> None:
     muddle = dict.fromkeys(range(10, 10 + MUDDLED), UNSURE)
     assert doubted({2: SHADOW, 4: SHADOW}, muddle) == {2, 4}
     assert doubted({2: SHADOW, 4: SHADOW, 5: RED}, muddle) == {2, 4}
-    assert doubted({2: WHITE, 4: WHITE}, muddle) == set()  # their numbers do not lie bare
+    assert doubted({2: WHITE, 4: WHITE}, muddle) == set()  # their numbers are not in sight
     del muddle[10]
     assert doubted({2: SHADOW, 4: SHADOW}, muddle) == set()
 
@@ -100,7 +100,7 @@ def test_a_single_mark_that_looks_like_a_fingertip_is_hidden() -> None:
 def test_stripes_blur_and_fingers_are_not_read_as_marks(
     activity: Activity, trouble: str, number: int
 ) -> None:
-    """Each of these frames had bare cells that were told marked."""
+    """Each of these frames had bare cells that were read as marked."""
     at, kind = next((n, one) for n, one in enumerate(TROUBLES) if one.name == trouble)
     harsh = HarshCamera(CardCamera(activity.deck, title=activity.title), CHOSEN)
     frame = harsh.frame(kind, np.random.default_rng([CHOSEN.seed, at, number]))

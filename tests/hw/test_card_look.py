@@ -43,7 +43,7 @@ def reading(marked: int = 0, *, hidden: int = 0, card: int = CARD) -> CardReadin
 def looked(
     readings: Iterable[CardReading], called: Iterable[int] = (), *, identify: bool = False
 ) -> CardLook:
-    """Look until it is over."""
+    """Look until the look is over."""
     look = CardLook(reader(), BINGO.user_states, set(called), identify=identify)
     for one in readings:
         if not look.is_over:
@@ -76,7 +76,7 @@ def test_one_misread_picture_among_right_ones_says_nothing(
     if state == "missing numbers":
         right = reading(1 << 7)
     elif state == "bingo":
-        right = reading(ROW & ~1)  # one of them is a finger in the other picture
+        right = reading(ROW & ~1)  # in the other picture, one of them is a finger
     for at in range(5):
         shown = [right] * 5
         shown[at] = reading(marked)

@@ -80,7 +80,7 @@ def test_odd_objects_on_a_number_are_not_read_as_bare_paper(
         assert reading.card in (frame.card, None)
         assert not (reading.marked ^ frame.marked) & ~reading.hidden
         told += (reading.marked & frame.marked).bit_count()
-    assert told > 5  # or all was hidden
+    assert told > 5  # else every cell was hidden
 
 
 def test_the_classifier_is_small_and_refuses_other_features() -> None:
@@ -95,7 +95,7 @@ def test_the_classifier_is_small_and_refuses_other_features() -> None:
 def test_cells_under_a_hand_are_hidden_and_the_others_are_read(reader: CardReader) -> None:
     frame = taken(0b1111100000, replace(CLEAN, hand="finger", size=(800, 600)), seed=2)
     covered = frame.unknown(0.8)
-    assert covered  # or this frame tests nothing
+    assert covered  # else this frame tests nothing
     reading = reader.read(frame.picture)
     assert reading.card == 17
     assert reading.hidden & covered == covered
@@ -217,7 +217,7 @@ def test_a_card_state_uses_only_certain_cells(reader: CardReader, activity: Acti
     row = dict.fromkeys(range(5), seen)
     assert reader.state(reading_of(reader, 3, row), states, called) == "bingo"
     called |= set(numbers[5:10])
-    bare = reading_of(reader, 3, {**row, 7: (0.98, 0.02, 0.0)})  # told, and not to be rested on
+    bare = reading_of(reader, 3, {**row, 7: (0.98, 0.02, 0.0)})  # readable, but unreliable
     assert (bare.marked & 1 << 7, bare.hidden) == (0, 0)
     assert reader.state(bare, states, called) == "bingo"  # it changes nothing
     bare = reading_of(reader, 3, {7: (0.98, 0.02, 0.0)})

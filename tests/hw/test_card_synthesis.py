@@ -32,7 +32,7 @@ def camera() -> CardCamera:
 
 @cache
 def seen(clear: float | None = None, tone: tuple[float, float, float] = RED) -> RectifiedGrid:
-    """See card 17 straight on, with a chip on cell 6 that so much light goes through, or none."""
+    """See card 17 straight on, with a chip of this transparency on cell 6, or none."""
     random = np.random.default_rng(4)
     chips = {}
     if clear is not None:

@@ -81,7 +81,7 @@ def test_a_card_with_hidden_tags_is_noticed_beside_another_card(
 
 def test_one_visible_tag_is_enough_to_notice_a_card(reader: CardReader, camera: CardCamera) -> None:
     corner = np.array(taken(camera, 17).corners)
-    left = int(corner[:, 0].max()) - 44  # of it just the tags at the right, one of them covered
+    left = int(corner[:, 0].max()) - 44  # only its right tags are in sight, one of them covered
     own = covered(camera, taken(camera, 17), TAGS[1]).picture[:, left:]
     reading = reader.read(np.hstack([own, taken(camera, 31).picture]))
     assert reading.card is None and reading.cards == (17, 31)

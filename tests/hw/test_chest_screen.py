@@ -58,11 +58,11 @@ class Page:
 
     @property
     def texts(self) -> list[str]:
-        """The lines it was told to show."""
+        """The lines it got to show."""
         return [one["text"] for one in self.shown]
 
     def go(self) -> None:
-        """Vanish, without a word."""
+        """Vanish without closing the connection."""
         self._task.cancel()
         if self._writer is not None:
             self._writer.transport.abort()
@@ -70,7 +70,7 @@ class Page:
 
 @pytest.fixture(autouse=True)
 def patience(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let pages be slow that share their processor with other tests."""
+    """Give pages more time, because they share their processor with other tests."""
     monkeypatch.setattr(chest, "SHOW_SECONDS", PATIENCE)
 
 
@@ -116,7 +116,7 @@ class TestAnsweringCalls:
     ) -> None:
         (page,) = await opened(screen, "one")
         screen.offer({"staff": "Station 2"})
-        await until(lambda: page.calls == {"staff": "Station 2"})  # its process knows of it
+        await until(lambda: page.calls == {"staff": "Station 2"})  # the page has the call
         pairing = screen.pairing
         looks_on = f"Cookie: {pairing.cookie}={pairing.token(viewer=True)}\r\n".encode()
         pressed = await ask(screen.port, "POST", "/answer?call=staff")
@@ -158,7 +158,7 @@ class TestShowing:
     ) -> None:
         (early,) = await opened(screen, "early")
         await screen.show(Picture("first"))
-        await screen.show(Picture("second"))  # is over when the page has drawn it
+        await screen.show(Picture("second"))  # it ends when the page has drawn the picture
         (late,) = await opened(screen, "late")
         await until(lambda: bool(late.texts))
         assert early.texts[-2:] == ["first", "second"] and late.texts == ["second"]
@@ -207,7 +207,7 @@ class TestShowing:
 
 class TestReading:
     async def test_the_screen_warns_until_a_page_opens(self, screen: WebChestScreen) -> None:
-        await screen.show(CALL)  # nobody is there who could fail to take it
+        await screen.show(CALL)  # there is no page that could fail to show it
         assert screen.reading().state == "WARN"
         assert screen.url in screen.why and screen.code in screen.why
 
@@ -226,7 +226,7 @@ class TestReading:
         assert (reading.state, reading.age) == ("STALE", 1.5)
         now += 2
         assert screen.pages == 0 and "any more" in screen.why
-        await screen.show(CALL)  # and it is no error that nobody took it
+        await screen.show(CALL)  # it is no error that no page took it
         await screen.close()
 
     async def test_a_page_that_hangs_is_stale_though_it_is_connected(
@@ -268,11 +268,11 @@ class TestReading:
         await screen.close()
 
 
-FILES_OF_A_PAGE = 4  # that the test itself has open while a page answers
+FILES_OF_A_PAGE = 4  # files of the test itself while a page answers
 
 
 def files() -> int:
-    """Say how many files this process has open."""
+    """Return the number of files this process has open."""
     return sum(1 for _ in Path("/proc/self/fd").iterdir())
 
 
@@ -300,7 +300,7 @@ class TestItsProcess:
         strangers = [await asyncio.open_connection("127.0.0.1", screen.port) for _ in range(200)]
         for _, writer in strangers:
             writer.write(b"GET / HTTP/1.1\r\nHost: 127")
-        # The paired page goes on to be shown things, and to say so.
+        # The paired page keeps showing pictures, and confirming them.
         await screen.show(CALL)
         alive = page.alive
         await until(lambda: page.alive > alive + 1)

@@ -62,7 +62,7 @@ async def events(
 
 
 async def status(reader: asyncio.StreamReader) -> int:
-    """Read the head of an answer, and return its status."""
+    """Read the head of a response, and return its status."""
     async with asyncio.timeout(PATIENCE):
         return int((await reader.readuntil(b"\r\n\r\n")).split(b" ")[1])
 
@@ -163,7 +163,7 @@ class TestStrangers:
     async def test_an_unpaired_client_can_neither_read_nor_post(
         self, server: Served, method: str, target: str, cookie: bytes
     ) -> None:
-        _, writer = await events(server, "one")  # a paired one is open under that name
+        _, writer = await events(server, "one")  # a paired page is open under that name
         await until(lambda: "one" in server.windows)
         answer = await ask(server.port, method, target, cookie)
         assert answer.startswith(b"HTTP/1.1 403 ") and answer.endswith(b"\r\n\r\n")
@@ -200,7 +200,7 @@ class TestStrangers:
             target = f"/seen?page=mine&number={number}"
             assert (await ask(server.port, "POST", target, COOKIE)).startswith(b"HTTP/1.1 204 ")
         async with asyncio.timeout(PATIENCE):
-            await reader.readuntil(b"event: alive")  # its events go on
+            await reader.readuntil(b"event: alive")  # its events continue
         assert server.connections <= chest_server.MOST_CONNECTIONS
         for one in (*writers, writer):
             one.transport.abort()
@@ -217,7 +217,7 @@ class TestStrangers:
             sent += 1
             await asyncio.wait([ended], timeout=0.02)
         assert ended.done()
-        with suppress(ConnectionResetError):  # what was sent meanwhile is refused, too
+        with suppress(ConnectionResetError):  # the data sent meanwhile is refused, too
             assert ended.result() == b""
         await until(lambda: server.connections == 0)
         writer.close()
@@ -304,10 +304,10 @@ class TestPairing:
             assert not check.right("0", "a")
         with pytest.raises(TooManyCodes):
             check.right("12345678", "a")
-        assert check.right("1234-5678", "b")  # another address is another matter
+        assert check.right("1234-5678", "b")  # another address counts separately
         for number in range(MOST_WRONG_OF_ALL - MOST_WRONG):
             assert not check.right("0", f"many-{number}")
-            if number == 10 * MOST_WRONG:  # some who guess keep nobody else out
+            if number == 10 * MOST_WRONG:  # wrong guesses lock out nobody else
                 assert check.right("12345678", "c")
         with pytest.raises(TooManyCodes):
             check.right("12345678", "c")

@@ -19,7 +19,7 @@ from tangy_hw.navigation.poses import Floats, relative_pose
 from tests.hw.raycast import driven
 
 LIMITS = MotionLimits()
-TORSO = 0.15  # metres that a body may reach out beyond a return
+TORSO = 0.15  # metres that a body may extend beyond a return
 CLOSE = LIMITS.radius + TORSO
 NOBODY = NearbyPeople((), np.zeros((0, 2)))
 
@@ -91,7 +91,7 @@ class TestPeople:
         limited = [limit_near_people(Twist(0.5, 0.0), near, one) for one in (LIMITS, told)]
         assert limited[0] == limited[1]
         assert 0 < limited[0].forward < past(Twist(0.5, 0.0), replace(away, pace=0.0)).forward
-        assert LIMITS.turned_faster >= 0.6  # with less, robots were touched by people who turned
+        assert LIMITS.turned_faster >= 0.6  # with less, robots touched people who turned
 
     def test_the_robot_stops_for_a_person_crossing_its_path(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
@@ -134,7 +134,7 @@ class TestPeople:
             pose = driven(pose, twist, 0.1)
             x, y = x + vx * 0.1, y + vy * 0.1
             apart = hypot(x - pose.x, y - pose.y)
-            ahead = there.x > 0  # driving on takes it away from those behind, who may run into it
+            ahead = there.x > 0  # driving on takes it away from people behind, who may run into it
             if ahead and twist.forward > 0.02 and apart < was and was > 0.47:
                 assert apart > 0.47, (twist, there)
 

@@ -90,7 +90,7 @@ def test_a_map_from_a_recording_has_its_walls_in_place(tmp_path: Path) -> None:
     start = Pose(5.0, 1.5, pi / 2)
     recorder = ScanRecorder(tmp_path / "a.log")
     navigator = DeadReckoning(recorder, start, LASER)
-    wheels = Pose(7.0, -3.0, 0.4)  # what they count begins anywhere
+    wheels = Pose(7.0, -3.0, 0.4)  # odometry begins anywhere
     for number in range(12):
         steps = Pose(0.15 * number, 0.0, 0.1 * number)
         truth = compose(start, steps)

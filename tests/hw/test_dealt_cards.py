@@ -135,7 +135,7 @@ def test_an_uncertain_sight_is_neither_learnt_nor_judged(world: LiveWorld, link:
     assert world.cards.dealt.card_of("user1") is None and not world.cards.news
     visit(world, link, 1, wrongly_marked(OWN))
     looks = [what["identify"] for did, what in link.done if did == "card"]
-    assert looks == [True, True]  # two pictures are asked for as long as the card is not known
+    assert looks == [True, True]  # two pictures are needed while the card is not known
     visit(world, link, 1, wrongly_marked(OWN))
     assert [what["identify"] for did, what in link.done if did == "card"][-1] is False
 

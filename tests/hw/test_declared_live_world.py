@@ -1,4 +1,4 @@
-"""A live game declared by facts counts who acts, what is answered and what the robot has done."""
+"""A live game declared by facts counts who acts, the answers, and the robot's actions."""
 
 from __future__ import annotations
 
@@ -175,7 +175,7 @@ def test_an_unclear_answer_is_asked_again_up_to_the_limit(
     world: DeclaredLiveWorld, link: FakeLink
 ) -> None:
     asked(world)
-    left = world.activity.asking.visit - 1  # she said nothing to the question itself
+    left = world.activity.asking.visit - 1  # she left the question itself unanswered
 
     def meanwhile(what: str, time: float) -> None:
         if what == "wait" and not world.unsure:
@@ -233,7 +233,7 @@ def test_a_held_up_letter_counts_as_one_answer(world: DeclaredLiveWorld, link: F
     letter = next(one for one in "abc" if items.value(row, one) == right(world))
     link.state = replace(link.state, shows=((1, letter, link.time, 0.9),))
     assert dict(world.observe().facts)["answer"] == "right"
-    world.game.execute("give hint", "user1")  # takes it back, while the sign is still up
+    world.game.execute("give hint", "user1")  # withdraws it, while the sign is still up
     assert world.observe().stage == "listen"
     link.state = replace(link.state, shows=())
     world.observe()

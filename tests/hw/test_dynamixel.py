@@ -1,4 +1,4 @@
-"""Arms of Dynamixel servos, by Robotis' package against a bus of the tests' own."""
+"""Arms of Dynamixel servos, by Robotis' package against a bus of the tests."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class TestServos:
         assert speed(90, 1.5, 4) == 1500
         # 60 degrees in 2 s are five turns a minute
         assert speed(60, 2, 0) == round(5 / 0.229)
-        assert speed(0, 2, 0) == speed(0, 0, 4) == 1  # 0 would be as fast as it can
+        assert speed(0, 2, 0) == speed(0, 0, 4) == 1  # 0 would mean the greatest speed
 
     def test_bits_of_an_error_have_names(self) -> None:
         assert meaning(0b100100) == "overheating and overload"
@@ -143,7 +143,7 @@ class TestArms:
                 await soon(posing)
             await until(lambda: bus.servos[2].goal == 1500)
             assert bus.servos[2].torque and bus.servos[1].goal == 2048 + 512
-            assert bus.servos[2].speed == 1  # as slow as can be, should it have gone too far
+            assert bus.servos[2].speed == 1  # the slowest speed, in case it has gone too far
             bus.servos[7].there = False
             bus.servos[2].position = 1400
             await arms.hold()
@@ -166,7 +166,7 @@ class TestArms:
             await until(lambda: bus.servos[2].goal == 1500)
             assert bus.servos[2].torque
             bus.servos[7].there, bus.servos[2].sticks = True, False
-            bus.servos[7].write(64, b"\x00")  # it was without power
+            bus.servos[7].write(64, b"\x00")  # it had no power
             await soon(arms.pose({"head": (5, 0)}, 0.2))
             assert bus.servos[7].torque
 

@@ -1,4 +1,4 @@
-"""Robots with a navigation of their own: goals are sent, and cancelled if driving is unsafe."""
+"""Robots with their own navigation: goals are sent, and cancelled if driving is unsafe."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ START = Pose(1.0, 1.0, 0.0)
 
 
 class Living:
-    """A robot with a navigation of its own, and that at the other end of the link."""
+    """A robot with its own navigation, and that navigation at the other end of the link."""
 
     def __init__(
         self, robot: LiveRobot, parts: ToldBody, base: MoveBase, living: asyncio.Task[None]
@@ -102,7 +102,7 @@ async def test_a_goal_is_driven_and_the_pose_reported(
         one.base.end(3)
         assert await soon(going) is True
         assert one.facts("navigator") == {"path": "clear"}
-        assert not one.base.cancelled and one.parts.told == []  # nobody drives the base but it
+        assert not one.base.cancelled and one.parts.told == []  # only its navigation drives it
 
 
 async def test_no_goal_is_sent_while_the_robot_must_not_drive(
@@ -130,7 +130,7 @@ async def test_no_goal_is_sent_while_the_robot_must_not_drive(
 
 
 async def go_without_a_way(one: Living) -> None:
-    """Send the robot off, and have its navigation find no way."""
+    """Send the robot off, and let its navigation find no path."""
     going = asyncio.create_task(one.robot.go(GOAL))
     await until(lambda: one.base.goals)
     one.base.end(4, "no path")
@@ -302,7 +302,7 @@ async def test_a_silent_navigation_is_stale_and_has_no_pose() -> None:
 
 
 def robot_file(folder: Path, navigator: str) -> Path:
-    """Write the profile of a robot that has a navigation of its own."""
+    """Write the profile of a robot that has its own navigation."""
     path = folder / "mine.toml"
     at = 'kind = "rosbridge", at = "ws://127.0.0.1:9"'
     drivers = f"base = {{ {at} }}\nlaser = {{ {at} }}\nnavigator = {{ {at}{navigator} }}"

@@ -1,4 +1,4 @@
-"""The robot's voice speaks each line, or reports that it was not heard."""
+"""The robot's voice speaks each line, or reports that nobody could hear it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SECONDS = 2.0  # of every line
 
 
 class Scene:
-    """Voices with a synthesiser that is a script, and a clock."""
+    """Voices with a clock and a script in place of the synthesiser."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -103,7 +103,7 @@ async def test_speech_is_cut_at_once(scene: Scene, by: str) -> None:
         await scene.clock.somebody_sleeps()
         if by == "hush":
             await voice.hush()
-            await saying  # it is no error: somebody wanted it so
+            await saying  # it is no error: the silence was intended
             assert voice.reading().state == "OK"
         elif by == "close":
             await voice.close()

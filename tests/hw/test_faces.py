@@ -42,7 +42,7 @@ def rows(seed: int, count: int = 4, columns: int = 12) -> Any:
 
 
 def among(middle: int, seed: int, count: int = 6, near: float = 0.35) -> Any:
-    """Make features of one person, around a middle of their own."""
+    """Make features of one person, around a mean of their own."""
     rng = np.random.default_rng((middle, seed))
     made = rows(middle, 1, 200) + rng.normal(size=(count, 200)) * near / np.sqrt(200)
     return (made / np.linalg.norm(made, axis=1, keepdims=True)).astype(np.float32)
@@ -232,7 +232,7 @@ class TestKeeping:
                 back = read_face(store, "user1", "hoglbp1")
             except FaceError as error:
                 assert path.name in str(error) and "\n" not in str(error)
-            else:  # the byte was the same, or changed nothing that is used
+            else:  # the byte was the same, or in an unused place
                 assert np.allclose(back, rows(1), atol=1e-3)
 
         law()

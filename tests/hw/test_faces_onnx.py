@@ -33,7 +33,7 @@ def models(tmp_path: Path) -> FaceModels:
 
 
 def face(person: int, picture: int, *, unlike: float = 0.0) -> Any:
-    """Make a picture of what these models take for a face: squares around a green spot."""
+    """Make a picture that these models take for a face: squares around a green spot."""
     who, now = np.random.default_rng(person), np.random.default_rng((person, picture))
     squares: Any = np.repeat(who.integers(30, 220, (15, 25, 1)), 3, axis=2)
     squares = squares * now.uniform(1 - unlike, 1 + unlike, squares.shape[:2])[..., None]
@@ -64,7 +64,7 @@ def test_faces_are_found_and_distinguished(models: FaceModels) -> None:
 
 def test_a_large_picture_is_scaled_down_and_its_boxes_scaled_back(models: FaceModels) -> None:
     image = np.full((1536, 2560, 3), 90, np.uint8)
-    image[192:224, 320:352] = (0, 255, 0)  # 16 pixels, as it is looked at
+    image[192:224, 320:352] = (0, 255, 0)  # 16 pixels after scaling
     (seen,) = open_reader(models).read(image)
     assert seen.box == pytest.approx((257, 129, 158, 158), abs=4)
 
@@ -88,7 +88,7 @@ def test_missing_or_broken_model_files_are_refused(models: FaceModels, tmp_path:
 
 
 def test_a_model_with_another_interface_is_refused(models: FaceModels) -> None:
-    with pytest.raises(FaceError, match="YuNet"):  # which finds none, or breaks, or loads not
+    with pytest.raises(FaceError, match="YuNet"):  # it finds none, fails, or does not load
         OnnxReader(models.recogniser, models.finder).read(face(1, 1))
 
 
@@ -103,7 +103,7 @@ def test_the_verbs_use_the_robots_files(tangy: Tangy, models: FaceModels, tmp_pa
     cv2.imwrite(str(new), face(1, 9))
     data = ("--robot", robot, "--json", "--data", tmp_path / "data")
     done = tangy("faces", "enrol", "Rosa", "--from", pictures, "--consent", "asked", *data)
-    assert done.returncode == 2 and "move the head" in done.stderr  # they are nearly the same
+    assert done.returncode == 2 and "move the head" in done.stderr  # pictures nearly the same
     for number in range(4):
         cv2.imwrite(str(pictures / f"{number}.png"), face(1, number, unlike=0.6))
     done = tangy("faces", "enrol", "Rosa", "--from", pictures, "--consent", "asked", *data)
@@ -111,7 +111,7 @@ def test_the_verbs_use_the_robots_files(tangy: Tangy, models: FaceModels, tmp_pa
     (row,) = json.loads(tangy("faces", "who", new, *data).stdout)
     assert row["nearest"] == "guest1"
     usual = tangy("faces", "who", new, "--json", "--data", tmp_path / "data")
-    assert "Nobody's face is known yet" in usual.stderr  # by what these models are not
+    assert "Nobody's face is known yet" in usual.stderr  # the usual models know nobody
     missing = tangy("faces", "who", new, "--robot", robot_file(tmp_path, "no.onnx", "x.onnx"))
     assert missing.returncode == 2 and "no.onnx" in missing.stderr
     assert missing.stderr.count("\n") == 1

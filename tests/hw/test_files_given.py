@@ -38,20 +38,20 @@ def pipe_at(path: Path) -> Path:
 
 
 def device_at(path: Path) -> Path:
-    """Make a link to a device that has no end."""
+    """Make a link to an endless device."""
     path.symlink_to("/dev/zero")
     return path
 
 
 def of_map(path: Path) -> Any:
-    """Read a map whose picture a file is."""
+    """Read a map with this file as its picture."""
     path.rename(path.with_name("a.pgm"))
     (path.parent / "map.yaml").write_text(YAML)
     return read_map(path.parent / "map.yaml")
 
 
 def labels(path: Path) -> Any:
-    """Read the labels that a file is."""
+    """Read this file as labels."""
     path.rename(path.with_name("labels.json"))
     deck = load_activity("bingo").deck
     assert deck is not None
@@ -60,7 +60,7 @@ def labels(path: Path) -> Any:
 
 @pytest.fixture
 def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[str]]:
-    """Put programs on the path that note that they were started; return which were."""
+    """Put programs on the path that record when they start; return the started ones."""
     folder, told = tmp_path / "programs", tmp_path / "told"
     folder.mkdir()
     for name in ("gs", "gswin32c", "gswin64c", "convert", "magick"):

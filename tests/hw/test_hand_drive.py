@@ -30,7 +30,7 @@ BEAMS, FIRST = 271, -math.radians(135)
 
 
 def scan(**ahead: float) -> Scan:
-    """Return what is seen: nothing, or something as far off to the named sides."""
+    """Return a scan of nothing, or with an object this far off on the named sides."""
     ranges = np.full(BEAMS, np.inf)
     for side, far in ahead.items():
         ranges[{"front": 135, "left": 225, "right": 45}[side] + np.arange(-9, 10)] = far
@@ -96,7 +96,7 @@ class TestHandDrive:
             assert one.robot.wheels.driven == STILL
             assert "laser scanner says nothing" in one.state().hazard
             laser.age = 0.0
-            await asyncio.sleep(0)  # the command to stand is handed over
+            await asyncio.sleep(0)  # the command to stand is sent
             await one.take(do="drive", forward=9.0, turn=0.0)
             one.robot.tick()
             assert one.robot.wheels.driven == Twist(one.robot.robot.speed, 0.0)

@@ -69,7 +69,7 @@ def test_a_value_carries_the_time_stamp_of_its_source() -> None:
     now[0] = 5.5
     newest.take("late", AHEAD + 0.1)
     assert newest.stamped.time == pytest.approx(5.1)
-    assert newest.age == 0.0  # what counts for the watchdogs is when it arrived
+    assert newest.age == 0.0  # watchdogs count from the arrival
 
 
 @pytest.mark.parametrize("ros", [1, 2])
@@ -93,7 +93,7 @@ class TestOdometryHistory:
             (1.2, Pose(0.0, 0.2, -3.0), Twist(0.5, 1.0)),
         )
         assert history.at(1.1).y == pytest.approx(0.1)
-        assert abs(history.at(1.1).heading) == pytest.approx(pi, abs=1e-6)  # and not the long way
+        assert abs(history.at(1.1).heading) == pytest.approx(pi, abs=1e-6)  # not the long way round
         assert history.at(0.5) == Pose(0.0, 0.0, 3.0)
 
     def test_a_pose_after_the_last_sample_is_extrapolated_for_a_short_time(self) -> None:

@@ -161,7 +161,7 @@ class TestLeftAlone:
                 await until(lambda: {"say", "pose"} <= set(parts.told))
                 robot.alone = lambda: "nobody is there"
                 await asyncio.sleep(0.1)
-                assert not doing.done() and "hold" not in parts.told  # it may be for a moment
+                assert not doing.done() and "hold" not in parts.told  # it may only be for a moment
                 with pytest.raises(Preempted, match="nobody is there"):
                     await soon(doing)
                 await until(lambda: "hush" in parts.told)
@@ -178,7 +178,7 @@ class TestSpin:
         ("fit", "spread", "settled", "found"),
         [
             (1.0, 0.1, True, True),
-            (0.5, 0.1, True, True),  # somebody stands before it
+            (0.5, 0.1, True, True),  # a person stands before it
             (1.0, 0.1, False, False),
             (1.0, 0.6, True, False),  # it might be elsewhere as well
             (0.5, 0.6, True, False),
@@ -238,7 +238,7 @@ async def test_localisation_gets_the_odometry_of_the_scan_time() -> None:
         with patch.object(robot.navigator, "tick", note):
             parts.base.odometry = Stamped(Odometry(Pose(0.0, 0.0, 0.0), turns), 10.0, 2, 10.0)
             robot.tick()
-            parts.laser.scan = replace(scan, stamp=10.4, seq=2, measured=10.1)  # it was held up
+            parts.laser.scan = replace(scan, stamp=10.4, seq=2, measured=10.1)  # it came late
             parts.base.odometry = Stamped(Odometry(Pose(0.1, 0.0, 0.0), turns), 10.4, 3, 10.2)
             robot.tick()
         at_scan = told[-1]

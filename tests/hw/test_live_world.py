@@ -1,4 +1,4 @@
-"""The live world: what the robot does for each behaviour, and how it reads its sensors."""
+"""The live world: the robot's actions for each behaviour, and how it reads its sensors."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_the_chest_screen_names_nobody(link: FakeLink, speaks: bool) -> None:
     shown = [what["picture"] for did, what in link.done if did == "perform"]
     assert any("Ben" in said for said in link.said)
     assert not any("Ben" in str(picture) for picture in shown)
-    assert any(picture["asks"] == "Seat 2" for picture in shown)  # whose turn it is
+    assert any(picture["asks"] == "Seat 2" for picture in shown)  # it is this person's turn
 
 
 def test_no_number_comes_twice_and_another_seed_has_another_order(link: FakeLink) -> None:
@@ -156,7 +156,7 @@ def test_a_person_who_takes_the_sign_down_is_not_visited(world: LiveWorld, link:
     link.sign(2)
     world.observe()
     link.sign()
-    assert world.observe().attended == "user2"  # it may only have been hidden for a moment
+    assert world.observe().attended == "user2"  # the sign may only have been hidden for a moment
     link.time += 10
     assert world.observe().attended is None
 
@@ -201,7 +201,7 @@ def test_wrong_marks_are_named_and_their_removal_is_seen(world: LiveWorld, link:
     assert response is not None and response.strategy == "praise" and response.person == "user1"
     assert response.followed and response.complied
     assert response.seconds == pytest.approx(4, abs=1.5)
-    assert world.observe().closed == "user1"  # the card is right, and the request is over
+    assert world.observe().closed == "user1"  # the card is right, so the request is over
 
 
 def test_a_late_response_is_followed_but_not_complied(world: LiveWorld, link: FakeLink) -> None:
@@ -216,7 +216,7 @@ def test_a_late_response_is_followed_but_not_complied(world: LiveWorld, link: Fa
     response = do(world, "move card closer", "user1").response
     assert response is not None and response.followed and not response.complied
     shown = [what["picture"]["text"] for done, what in link.done if done == "perform"]
-    assert len(shown) == len(set(shown))  # nobody is asked twice for one thing
+    assert len(shown) == len(set(shown))  # nothing is asked twice
     assert world.observe().situation.user_state == "correctly marked"
 
 
@@ -385,12 +385,12 @@ def test_only_a_critical_fault_interrupts_a_call(
     assert read and all(health == link.health() for health in read)
     assert world.broken == why and outcome.completed is not critical
     assert asked_of(link).count("cancel") == critical
-    if critical:  # nobody was told a number, so none was called, and there is nothing to be marked
+    if critical:  # nobody heard a number, so none was called, and nobody has to mark one
         assert ("cancel", {"why": "laser-disconnected"}) in link.done
         assert outcome.numbers == () and world.called == []
         assert world.tracker.count("call number") == 0 and world.scene().called == ()
         link.slow.clear()
-        assert do(world, "call number").completed and world.broken == ""  # once it is over
+        assert do(world, "call number").completed and world.broken == ""  # once that is over
     assert world.called and world.tracker.count("call number") == 1
 
 
@@ -449,7 +449,7 @@ def test_setting_a_request_aside_closes_it_until_the_next_sign(
 
 
 def lost(link: FakeLink, **facts: Any) -> None:
-    """Let the robot say how sure it is of its place; without facts it knows it."""
+    """Set how certain the robot is of its place; without facts it is certain."""
     health = tuple(
         r._replace(facts=facts) if r.device == "localisation" else r for r in link.state.health
     )
@@ -502,7 +502,7 @@ def test_looking_again_replans_and_spins_only_for_a_lost_pose(
     lost(link, spread=1.4)
     world.recover(Remedy("look again", "carried-off", "localisation"))
     assert "spin" in [do for do, _ in link.done]
-    assert link.told[-2:] == ["release", "stop: carried-off"]  # it is not gone
+    assert link.told[-2:] == ["release", "stop: carried-off"]  # the fault is still there
 
     link.meanwhile = lambda do, _: lost(link) if do == "spin" else None
     world.recover(Remedy("look again", "carried-off", "localisation"))
@@ -511,9 +511,9 @@ def test_looking_again_replans_and_spins_only_for_a_lost_pose(
 
 def test_the_recovery_time_includes_the_standstill(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
-    link.time += 60.0  # it was paused: that is no fault's
+    link.time += 60.0  # the game was paused: that time does not count
     world.recover(Remedy("halt", "laser-disconnected", "laser"))
-    link.time += 90.0  # somebody came, and pushed a cable back in
+    link.time += 90.0  # meanwhile a person plugged a cable in again
     assert 90.0 <= world.recover(Remedy("call expert", "laser-disconnected", "laser")) < 95.0
     link.time += 30.0
     assert 30.0 <= world.recover(Remedy("look again", "laser-disconnected", "laser")) < 40.0

@@ -27,7 +27,7 @@ ROUND = tour([(5, 1.2), (8, 4.2), (5, 1.2), (2, 4.2), (5, 1.2)])
 
 
 class Driven:
-    """A robot in the room that is driven, and localised."""
+    """A robot that drives through the room and localises itself."""
 
     def __init__(self, seed: int, start: Pose | None = START, true: Pose = START) -> None:
         self.rng = np.random.default_rng(seed)
@@ -37,7 +37,7 @@ class Driven:
         self.localisation = Localisation(MAP, np.random.default_rng(seed + 1), start)
 
     def drive(self, twists: list[Twist]) -> list[tuple[float, Estimate]]:
-        """Drive; return after each step by how many metres the estimate is off, and itself."""
+        """Drive; return the error in metres and the estimate after each step."""
         found = []
         for twist in twists:
             self.true = driven(self.true, twist, 0.1)
@@ -85,7 +85,7 @@ class TestFollowing:
         robot.drive([Twist(0, 0)] * 3)
         before = robot.localisation.particles.copy()
         off, _ = robot.drive([Twist(0.3, 0)])[-1]
-        assert (robot.localisation.particles == before).all()  # 3 cm are not worth it
+        assert (robot.localisation.particles == before).all()  # 3 cm are too little for an update
         assert off < 0.1
 
     def test_standing_people_do_not_lower_the_confidence(self) -> None:

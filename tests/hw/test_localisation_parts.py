@@ -234,7 +234,7 @@ class TestMatching:
         second = look(corridor, Pose(0.3, 0.1, 0.0))
         match = Reference(first).match(second, Pose(0.2, 0, 0))
         assert match.pose.y == pytest.approx(0.1, abs=0.01)
-        assert match.pose.x == pytest.approx(0.2, abs=0.02)  # as it was guessed
+        assert match.pose.x == pytest.approx(0.2, abs=0.02)  # as guessed
         assert match.told == pytest.approx(np.diag([0.0, 1.0]), abs=0.01)
 
 

@@ -23,7 +23,7 @@ ROOM = load_room()
 
 
 def tangy_map(*words: str | Path) -> Result:
-    """Run the verb; what a person can put right is raised."""
+    """Run the verb; errors of the user are raised."""
     app = typer.Typer()
     app.command()(draw_map)
     done = CliRunner().invoke(app, [str(word) for word in words], env={"COLUMNS": "80"})
@@ -33,7 +33,7 @@ def tangy_map(*words: str | Path) -> Result:
 
 
 def log_of_a_room(path: Path) -> Path:
-    """Write what a laser with half a circle sees from some places in the room."""
+    """Write the scans of a half-circle laser at some places in the room."""
     lines = []
     for number in range(24):
         pose = Pose(1.5 + 0.3 * number, 2.0, number * 0.5)
@@ -46,7 +46,7 @@ def log_of_a_room(path: Path) -> Path:
 
 
 def log_that_slips(path: Path, slip: Pose) -> Path:
-    """Write what a laser sees while a robot goes round a room twice; then its wheels slip."""
+    """Write scans of a robot that goes round a room twice, until its wheels slip."""
     lines = []
     places = [(1.5 + 0.2 * n, 1.5, 0.1 * n) for n in range(35)] * 2
     for number, (x, y, heading) in enumerate(places):

@@ -149,7 +149,7 @@ class TestFiles:
 
 
 def scans_of_a_tour(scale: float, noise: float) -> tuple[list[PlacedScan], list[Pose]]:
-    """Drive through the room; return scans at the poses that wheels counted, and the true ones."""
+    """Drive through the room; return scans at the poses by odometry, and the true poses."""
     rng = np.random.default_rng(3)
     sides, pose, wheels = room_sides(ROOM), Pose(5.0, 1.2, 0.0), Wheels(rng, scale, noise)
     start, counted, truth = pose, [], []

@@ -204,7 +204,7 @@ class TestLateBase:
 
 
 def commands_to_a_late_base(seconds: float, *, moves: bool = True) -> list[float]:
-    """Drive along the room's front; return the forward speeds that the base was told."""
+    """Drive along the room's front; return the forward speeds sent to the base."""
     start = Pose(2.0, 1.2, 0.0)
     navigator = Navigator(MAP, np.random.default_rng(1), start)
     navigator.go(Pose(8.0, 1.2, 0.0))

@@ -136,6 +136,6 @@ class TestPeople:
 
     @pytest.mark.slow
     def test_a_drive_without_people_is_not_slowed_down(self) -> None:
-        """It takes no longer than it took before it kept away from people."""
+        """It takes no longer than before the robot kept away from people."""
         for drive, seconds in zip(drives("alone", 2, seed=7), (16.3, 15.0), strict=True):
             assert drive.arrived and drive.time <= seconds

@@ -162,7 +162,7 @@ class TestFreeAhead:
 def follow(
     pursuit: Pursuit, pose: Pose, walls: np.ndarray | None = None, seconds: float = 60
 ) -> tuple[Pose, list[Twist], list[Pose]]:
-    """Drive exactly as commanded until it arrives; return the end, the commands and the way."""
+    """Drive exactly as commanded until it arrives; return the end, the commands and the path."""
     twist, told, way = STILL, [], [pose]
     for _ in range(int(seconds * 10)):
         scan = EMPTY if walls is None else look(walls, pose)

@@ -24,13 +24,13 @@ NOTHING = Scan(0.0, 0.01, np.zeros(0), 10.0)
 
 
 def circle(number: int, radius: float) -> list[Pose]:
-    """Return poses once around a circle, the last one where the first is."""
+    """Return poses once around a circle, with the last at the first."""
     turns = np.linspace(0.0, 2 * pi, number)
     return [Pose(radius * np.sin(t), radius * (1 - np.cos(t)), float(t)) for t in turns]
 
 
 def drifting(poses: list[Pose], turn: float, scale: float) -> list[PlacedScan]:
-    """Return scans at the poses that wheels count which err by so much a step."""
+    """Return scans at poses by odometry with this drift per step."""
     counted = [poses[0]]
     for start, end in pairwise(poses):
         step = relative_pose(start, end)
@@ -108,7 +108,7 @@ def test_a_map_from_slipping_wheels_is_refused(seed: int) -> None:
 
 
 def best_fit(scans: Sequence[PlacedScan], true: list[Pose]) -> float:
-    """Return how far poses are from the true ones, in m (root mean square, best fit)."""
+    """Return the error of poses, in m (root mean square, best fit)."""
     found = np.array([one.pose[:2] for one in scans])
     wanted = np.array([pose[:2] for pose in true])
     found, wanted = found - found.mean(axis=0), wanted - wanted.mean(axis=0)

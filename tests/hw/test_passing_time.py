@@ -187,7 +187,7 @@ async def test_a_waiter_gets_an_error_when_time_ends(stepped: bool) -> None:
         with pytest.raises(DeviceError, match=r"time stands still .*the base is gone"):
             await time.sleep(100)
         with pytest.raises(DeviceError, match=r"time stands still .*the base is gone"):
-            await time.sleep(1)  # and whoever comes later is not left waiting
+            await time.sleep(1)  # and later waits end, too
 
 
 async def test_a_cancelled_waiter_logs_no_error_when_time_ends() -> None:

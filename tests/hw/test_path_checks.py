@@ -1,4 +1,4 @@
-"""Paths that were planned before a person was seen: when another one is needed."""
+"""When a path needs replanning because a person was seen after it was planned."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def straight() -> Floats:
 
 
 def replans(gap: float, heading: float, seed: int) -> bool:
-    """Return whether a straight path needs another one past a torso that would be so far off."""
+    """Return whether a straight path is replanned past a torso at this distance."""
     person = Person(4.0, 2.5 + ROBOT + gap + TORSO, heading)
     drive = Drive(START, GOAL, [person], np.random.default_rng(seed))
     obstacles = Obstacles(MAP)

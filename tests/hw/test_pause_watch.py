@@ -20,7 +20,7 @@ FAST = Twist(0.5, 0.0)
 
 
 class Watched:
-    """A watch over one scanner that sends ten times a second, by a clock of its own."""
+    """A watch over one scanner that sends ten times a second, by the test's clock."""
 
     def __init__(self, liveness: Liveness | None = None) -> None:
         self.now = 100.0
@@ -33,13 +33,13 @@ class Watched:
         return self.watch.level
 
     def look(self, age: float, step: float = 0.1) -> str:
-        """Let time pass and the scanner's newest data be so old; return why the robot waits."""
+        """Advance the clock with the scanner's newest data this old; return why the robot waits."""
         self.now += step
         self.watch.look({"laser": age}, {"laser": age} if age > LIMIT else {})
         return self.watch.why
 
     def pause(self, seconds: float) -> None:
-        """Let the scanner send nothing for so long, and again as before."""
+        """Let the scanner send nothing for this long, then as before."""
         age = 0.05
         while age < seconds:
             self.look(age)
@@ -109,7 +109,7 @@ def test_the_warning_level_has_hysteresis() -> None:
         one.look(0.05)
     one.pause(0.9)
     assert one.level == "often"
-    one.now = first + 20.5  # the first is out of sight; the second alone would not have been told
+    one.now = first + 20.5  # the first is out of the window; the second alone is too little
     assert 0.025 < one.watch.lost < 0.05 and one.level == "often"
     one.now += 20
     assert one.level == "seldom"
@@ -128,7 +128,7 @@ def test_a_watch_before_its_start_holds_nothing_up() -> None:
 
 
 class TestRecorded:
-    """Beats of a robot on the bench, as `python -m tests.bench.jitter record` keeps them."""
+    """Beats of a robot on the bench, as `python -m tests.bench.jitter record` records them."""
 
     def test_a_recording_of_a_busy_machine_has_no_faults(self) -> None:
         told = replay(read_beats(BEATS / "busy.csv"), ROBOT)
@@ -136,7 +136,7 @@ class TestRecorded:
 
     def test_delays_up_to_a_second_are_pauses_and_longer_ones_are_faults(self) -> None:
         told = replay(read_beats(BEATS / "held-up.csv"), ROBOT)
-        assert told.faults.count("link") == 3  # it was held up for two seconds three times
+        assert told.faults.count("link") == 3  # the link was held up for two seconds three times
         assert told.pauses >= 20 and told.longest <= ROBOT.liveness.fault_after + GIVES_UP_SECONDS
 
 

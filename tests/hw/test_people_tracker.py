@@ -18,7 +18,7 @@ STANDS = Pose(5.0, 1.2, pi / 2)
 
 
 def walks(heading: float, speed: float) -> Person:
-    """Return somebody who walks straight on."""
+    """Return a person who walks straight on."""
 
     def step(person: Person, drive: Drive) -> None:
         person.walk(heading, speed)
@@ -31,7 +31,7 @@ def drive(people: list[Person], seed: int = 1, pose: Pose = STANDS) -> Drive:
 
 
 class Watching:
-    """A tracker that watches a drive; the wheels count exactly, and the place is known."""
+    """A tracker on a drive with exact odometry and a known pose."""
 
     def __init__(self, drive: Drive, *, knows_map: bool = True) -> None:
         self.drive, self.tracker = drive, PeopleTracker()

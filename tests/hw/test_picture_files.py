@@ -92,7 +92,7 @@ def test_pictures_without_true_colours_are_refused_for_cards(
     done = tangy("read-card", path, "--json")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert f"{path}: {says}" in done.stderr
-    assert read_picture(path).shape == (card.height, card.width, 3)  # faces are as good in grey
+    assert read_picture(path).shape == (card.height, card.width, 3)  # grey is enough for faces
 
 
 @pytest.mark.parametrize(("kind", "file"), [("P", "a.png"), ("RGB", "a.jpeg"), ("CMYK", "a.tiff")])

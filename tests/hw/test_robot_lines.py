@@ -257,7 +257,7 @@ async def test_an_unknown_device_state_is_an_error() -> None:
 
 
 def fuzzed(rng: random.Random) -> bytes:
-    """Return a line that is wrong somehow, or only odd."""
+    """Return an invalid line, or a merely odd one."""
     line = bytearray(rng.choice([*WRONG, *(json.dumps({"id": rng.randrange(9), "do": do}).encode()
                                            for do in DOES)])[:300])  # fmt: skip
     for _ in range(rng.randrange(6)):

@@ -22,7 +22,7 @@ from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.write_queue import WriteQueue
 
 SETUP = RobotSetup("tangy", "bingo", ("user1",))
-PIPE = 1 << 16  # bytes that wait in one
+PIPE = 1 << 16  # bytes that a pipe holds
 READY = "import sys, time; sys.stdin.readline(); print('{\"ready\": true}', flush=True); "
 AT_ONCE = 0.5
 
@@ -110,7 +110,7 @@ class TestHungProcess:
             assert time.monotonic() - began < AT_ONCE
             assert [json.loads(line)["do"] for line, _ in outbox.lines] == ["stop"]
             time.sleep(0.1)
-            assert len(beaten) <= 1  # which may have been on its way
+            assert len(beaten) <= 1  # it may have been on its way
         finally:
             began = time.monotonic()
             link.close()
@@ -172,7 +172,7 @@ class TestCalledOff:
     def opening(
         self, monkeypatch: pytest.MonkeyPatch, does: str
     ) -> tuple[RobotLink, Cancellation, Future[None]]:
-        """Begin to switch on a robot that never answers, on a thread."""
+        """Begin to open a robot that never answers, on a thread."""
         monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", does))
         cancellation = Cancellation()
         link = RobotLink(SETUP, cancellation=cancellation)

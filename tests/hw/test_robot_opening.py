@@ -40,7 +40,7 @@ class Slow:
 
 @pytest.fixture
 def armed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """After how many seconds the process would be ended anyway."""
+    """The seconds until the process is ended anyway."""
     seconds: list[float] = []
 
     class Signal:

@@ -1,4 +1,4 @@
-"""A battery behind ROS, from the message to the fault; and the robots that ship."""
+"""A battery behind ROS, from the message to the fault; and the shipped robots."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.support.waiting import until
 
 
 def state(percentage: float | None, status: int = 2, **more: Any) -> dict[str, Any]:
-    """Return a sensor_msgs/BatteryState; what is not measured is null, as JSON has it."""
+    """Return a sensor_msgs/BatteryState; unmeasured values are null in JSON."""
     return {
         "voltage": 14.2, "current": -0.8, "charge": None, "capacity": None,
         "design_capacity": 2.6, "percentage": percentage, "power_supply_status": status,
@@ -94,7 +94,7 @@ class TestShipped:
     def test_a_shipped_robot_has_a_ros_camera_and_a_safe_maximum_speed(self, name: str) -> None:
         robot = load_robot(name)
         assert find_camera(robot.devices["camera"].source).live
-        assert MotionLimits.of(robot).max_speed <= 0.306  # as far as a Create 3 lets itself go
+        assert MotionLimits.of(robot).max_speed <= 0.306  # a Create 3 limits itself to this speed
 
     def test_a_shipped_robot_has_the_postures_of_the_activity(
         self, name: str, activity: Activity

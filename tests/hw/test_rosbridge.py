@@ -79,7 +79,7 @@ class TestTopics:
 
 class TestServices:
     async def test_messages_published_before_an_answer_arrive_first(self) -> None:
-        """A bench in lock-step relies on it: after `advance` all of the step's data is there."""
+        """A bench in lock-step relies on it: after `advance` all data of the step is there."""
         async with linked() as (server, bridge, _):
             heard: list[int] = []
 

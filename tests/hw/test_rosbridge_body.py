@@ -1,4 +1,4 @@
-"""Arms and voices behind ROS, against a body of the tests' own at the other end of the link."""
+"""Arms and voices behind ROS, against a body of the tests at the other end of the link."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ LIMBS = {
 
 
 class Body:
-    """Joints at the other end that go where they are told, one step in each `step`."""
+    """Joints at the other end that follow commands, one position in each `step`."""
 
     def __init__(self, server: RosbridgeServer) -> None:
         self.server = server
@@ -176,7 +176,7 @@ class TestArms:
             await until(lambda: body.goals)
             assert (body.goals, body.told) == (body.positions, [1])
             body.goals.clear()
-            now.time += 1  # nobody knows any more where they are
+            now.time += 1  # their position is no longer known
             await arms.hold()
             await arms.relax()
             await until(lambda: body.torque == [False])

@@ -1,4 +1,4 @@
-"""Devices behind ROS, each against a robot of the tests' own at the other end of the link."""
+"""Devices behind ROS, each against a robot of the tests at the other end of the link."""
 
 from __future__ import annotations
 

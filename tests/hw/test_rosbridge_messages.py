@@ -66,7 +66,7 @@ def test_a_room_turned_by_a_quarter_in_the_map() -> None:
 
 @given(HEADINGS, st.floats(-0.3, 0.3), st.floats(0.5, 2))
 def test_a_heading_ignores_tilt_and_rounding(heading: float, lean: float, length: float) -> None:
-    """A quaternion turned about the robot's own side, and not of length one."""
+    """A quaternion tilted about the robot's own axis, and not of length one."""
     turn = quaternion_message(heading)
     z, w, s, c = turn["z"], turn["w"], math.sin(lean / 2), math.cos(lean / 2)
     leaning = {"x": -z * s, "y": w * s, "z": z * c, "w": w * c}

@@ -1,4 +1,4 @@
-"""Robots with a navigation of their own: goals of ROS 1 and ROS 2, and their results."""
+"""Robots with their own navigation: goals of ROS 1 and ROS 2, and their results."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ class TestMoveBase:
             cancelling = asyncio.create_task(navigator.cancel())
             await asyncio.sleep(1.2 * AGAIN_SECONDS)
             assert not base.goals and len(base.cancelled) == 1
-            base.say(1, key=base.cancelled[0])  # it is taken after all
+            base.say(1, key=base.cancelled[0])  # it accepts the goal after all
             await until(lambda: len(base.cancelled) == 2)
             base.say(2, key=base.cancelled[0])
             await soon(cancelling)
@@ -272,7 +272,7 @@ class TestNavigateToPose:
     async def test_a_bridge_that_blocks_during_a_goal_still_gets_a_stop(
         self,
     ) -> None:
-        """Some of ROS 2 read no more of a connection until the goal that it sent is over."""
+        """Some bridges of ROS 2 read nothing more from a connection until its goal is over."""
         sought, cancelled, heard = asyncio.Event(), asyncio.Event(), list[Any]()
 
         async def attend(link: ServerConnection) -> None:
@@ -317,7 +317,7 @@ class TestNavigateToPose:
                     cancelled.append(message["id"])
 
         async def drive(link: ServerConnection, key: str) -> None:
-            while len(cancelled) < 2:  # the first is not heard
+            while len(cancelled) < 2:  # the first one gets lost
                 fed = {"op": "action_feedback", "id": key}
                 at = {"current_pose": {"pose": pose_message(IN_MAP)}}
                 await link.send(json.dumps({**fed, "values": at}))

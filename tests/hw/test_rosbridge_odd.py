@@ -53,7 +53,7 @@ JSON = st.recursive(
 
 @st.composite
 def spoilt(draw: st.DrawFn) -> tuple[str, Any]:
-    """Return a topic, and a message of it of which one part is something else."""
+    """Return a topic, and a message of it with one changed part."""
     topic = draw(st.sampled_from(sorted(GOOD)))
     message = json.loads(json.dumps(GOOD[topic]))
     here: Any = message

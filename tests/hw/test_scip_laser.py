@@ -154,7 +154,7 @@ class TestFacts:
         await bench.attach()
         rng = np.random.default_rng(1)
         for _ in range(12):
-            # Below its nearest distance it writes why nothing was measured, and that flickers.
+            # Below its nearest distance it writes flickering reasons instead of distances.
             await bench.turn(rng.uniform(0, 0.019, URG.beams))
         assert bench.laser.reading().facts["variety"] == 0
 
@@ -206,7 +206,7 @@ class TestFaults:
         for _ in range(5):
             assert np.abs(await bench.turn(ROOM) - ROOM).max() <= 0.0005
         assert bench.laser.missed == 0 and bench.laser.spoilt >= 5
-        assert bench.laser.reading().state == "WARN"  # somebody should see to the cable
+        assert bench.laser.reading().state == "WARN"  # the cable needs a check
 
     async def test_a_truncated_reply_spoils_no_other_reply(self, bench: Bench) -> None:
         await bench.attach()
@@ -284,7 +284,7 @@ class TestFaults:
         await laser.close()
 
     async def test_damaged_scans_are_dropped_and_reported(self) -> None:
-        """A cable that spoils every third reply, and cuts and glues the others as it likes."""
+        """A cable that spoils every third reply, and cuts and joins the others at random."""
         server = ScipServer()
         await server.start()
         tasks: set[asyncio.Task[None]] = set()
@@ -321,7 +321,7 @@ class TestFaults:
                 server.send(ROOM, 100 * turn)
         await until(lambda: laser.spoilt == 3 and laser.scan is not None and laser.scan.seq == 6)
         assert laser.reading().state == "WARN"
-        assert laser.missed == 2  # the ninth, too, was spoilt, but no scan came after it
+        assert laser.missed == 2  # the ninth was spoilt, too, but no scan came after it
         await laser.close()
         between.close()
         await server.close()

@@ -1,4 +1,4 @@
-"""Signs in infrared pictures: found, at the right seat, believed when they stay."""
+"""Signs in infrared pictures: found, at the right seat, accepted when they stay."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class TestPersistence:
 
 @pytest.mark.slow
 def test_requests_are_detected_with_few_false_alarms() -> None:
-    """A small piece of `tests/bench/requests.py`, of other seeds than it."""
+    """A small part of `tests/bench/requests.py`, with other seeds."""
     asked = seen = false = pictures = 0
     for seed in range(700_000, 700_016):
         watcher = SignWatcher(VIEW)

@@ -1,4 +1,4 @@
-"""People who say nothing are asked again in the file's words: in the simulator and live alike."""
+"""Silent people are asked again in the file's words: in the simulator and live alike."""
 
 from __future__ import annotations
 
@@ -68,14 +68,14 @@ def test_a_repeated_question_allows_the_whole_pause_at_any_time(
 ) -> None:
     link = FakeLink(PEOPLE)
     world = live(activity, link)
-    seen: list[tuple[int, float]] = []  # how much Tangy has said, and when
+    seen: list[tuple[int, float]] = []  # how many lines Tangy has said, and when
     link.meanwhile = lambda what, time: seen.append((len(link.said), time))
     before = world.observe()
     ask(world)
     last = [time for said, time in seen if said == len(link.said)]
     assert last[-1] - last[0] >= PAUSE_SECONDS - LOOK_SECONDS
     after = dict(world.observe().facts)
-    assert dict(before.facts) != after and after["clock"] == ">=20"  # it went on meanwhile
+    assert dict(before.facts) != after and after["clock"] == ">=20"  # the clock went on meanwhile
 
 
 def test_a_robot_does_not_ask_a_person_again_after_an_answer(activity: DeclaredActivity) -> None:

@@ -108,7 +108,7 @@ async def test_a_late_listener_hears_only_the_newest_sound(path: Path) -> None:
     first = asyncio.ensure_future(take(listener, 2))
     link = Link(path)
     await link.said()
-    for number in range(150):  # three seconds, of which nobody takes more than the first piece
+    for number in range(150):  # three seconds; the listener takes only the first piece
         await link.spoken.say(number.to_bytes(2, "little") * (PIECE // 2))
         for _ in range(5):
             await asyncio.sleep(0)
@@ -127,7 +127,7 @@ async def test_delayed_sound_is_cut_to_its_newest_part(path: Path) -> None:
     hearing = asyncio.ensure_future(take(listener, 2))
     link = Link(path)
     await link.said()
-    await link.spoken.say(SOUND)  # a second at once: the link was down
+    await link.spoken.say(SOUND)  # a second at once, as after a broken link
     got = await hearing
     while not got.endswith(SOUND[-PIECE:]):
         got += await take(listener, 2)
@@ -183,7 +183,7 @@ async def test_a_newer_forwarder_replaces_the_older_one(path: Path) -> None:
     with pytest.raises(TakenOver, match="Another microphone has taken over"):
         await asyncio.wait_for(older.running, PATIENCE)
     await newer.spoken.say(b"new!")
-    assert await hearing == bytes(2 * RATE) + b"new!"  # quiet is where the older one ended
+    assert await hearing == bytes(2 * RATE) + b"new!"  # the older part ended, so it is quiet there
     await newer.end()
     await listener.close()
 
@@ -206,7 +206,7 @@ async def test_a_failing_source_ends_the_forwarder_with_its_reason(path: Path) -
 async def test_a_wrong_sample_rate_is_reported_once(path: Path, speed: float, says: str) -> None:
     link = Link(path)
     await link.said()
-    await link.spoken.say(bytes(2 * RATE * 20))  # what had waited on the way does not count
+    await link.spoken.say(bytes(2 * RATE * 20))  # sound that waited on the way does not count
     size = round(2 * RATE * speed / 2) // 2 * 2
     for _ in range(round(4 * SPEED_SECONDS) * 2):
         link.now += 0.5

@@ -34,7 +34,7 @@ class Listening:
 
 
 def wrong(on: Listening) -> str:
-    """Return what kind of trouble the meter sees; "" for none."""
+    """Return the kind of trouble that the meter reports; "" for none."""
     trouble = on.meter.trouble()
     return "" if trouble is None else trouble.kind
 

@@ -61,7 +61,7 @@ class Listening:
 
 
 def _connected_as_nobody(path: Path) -> str:
-    """Connect as another user, in a process of its own; return the error's name, if any."""
+    """Connect as another user, in another process; return the error's name, if any."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
@@ -131,7 +131,7 @@ class TestPlace:
         assert "Waiting" in await on.said()
         if os.geteuid() == 0:
             assert _connected_as_nobody(on.path) == "PermissionError"
-            on.path.chmod(0o666)  # somebody was careless
+            on.path.chmod(0o666)  # too open, by an oversight
             assert _connected_as_nobody(on.path) == ""
         else:
             own = os.geteuid()
@@ -287,7 +287,7 @@ class TestStreams:
 
     async def test_a_connection_reset_ends_a_stream(self, on: Listening) -> None:
         waiting = asyncio.ensure_future(on.next())
-        on.connect().close()  # with what it was told unread, or before it is accepted
+        on.connect().close()  # with its message unread, or before it is accepted
         with on.connect() as connection:
             connection.send(b"more")
             assert await waiting == b"more"

@@ -197,7 +197,7 @@ class TestStandardInput:
 class TestLocalMicrophone:
     @pytest.fixture
     def record(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-        """Install an arecord that keeps its words, sends a sound, and runs lines of shell."""
+        """Install an arecord that records its arguments, sends a sound, and runs lines of shell."""
         monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
 
         def install(then: str, first: str = ":") -> None:

@@ -87,7 +87,7 @@ class TestWav:
         assert np.abs(np.frombuffer(decode_wav(content, "it"), "<i2").astype(int)).max() <= 32_767
 
     @pytest.mark.parametrize(
-        ("codec", "codes", "samples"),  # as the tables of G.711 have them
+        ("codec", "codes", "samples"),  # as in the tables of G.711
         [
             (7, [0xFF, 0x7F, 0x80, 0x00, 0xF0], [0, 0, 32_124, -32_124, 120]),
             (6, [0xD5, 0x55, 0xAA, 0x2A, 0xC5], [8, -8, 32_256, -32_256, 264]),

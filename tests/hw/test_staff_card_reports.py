@@ -91,7 +91,7 @@ def test_an_unchanged_report_counts_as_not_followed(staffed: Staffed) -> None:
 def test_nobody_is_asked_to_move_a_card_without_a_camera(staffed: Staffed) -> None:
     staffed.visit("all correct")
     said = len(staffed.link.said)
-    staffed.world.tracker.seen = None  # as after a stop while staff were being asked
+    staffed.world.tracker.seen = None  # as after a stop during a question to staff
     staffed.tells = ["bingo"]
     staffed.do("move card closer", "user1")
     assert len(staffed.link.said) == said
@@ -113,12 +113,12 @@ def test_a_stop_ends_the_wait_for_staff(staffed: Staffed) -> None:
         ("bingo", ReportedCard("bingo")),
         ("wrong marks B-7, o70", ReportedCard("incorrectly marked", (7, 70))),
         ("missed numbers 5 and 20", ReportedCard("missing numbers", (5, 20))),
-        ("wrong marks", None),  # of which?
-        ("wrong marks 5", None),  # that was called
-        ("missed numbers 7", None),  # that was not
+        ("wrong marks", None),  # it names no number
+        ("wrong marks 5", None),  # 5 was called
+        ("missed numbers 7", None),  # 7 was not called
         ("missed numbers 5 and 99", None),
         ("all correct 5", None),
-        ("card not in view", None),  # nobody looks for it
+        ("card not in view", None),  # there is no camera
         ("so so", None),
     ],
 )

@@ -29,7 +29,7 @@ class TestTickWatch:
     def test_slightly_late_ticks_are_no_freeze(self) -> None:
         clock = Asleep()
         watch = TickWatch(clock)
-        assert not watch.tick()  # it was not begun
+        assert not watch.tick()  # it had not started
         watch.begin()
         for _ in range(20):
             clock.now += 0.9 * LATE_SECONDS
@@ -52,7 +52,7 @@ class TestTickWatch:
 
 
 def frozen(one: Spoken) -> None:
-    """Let the robot's control have been frozen for five seconds before the next tick."""
+    """Freeze the robot's control for five seconds before the next tick."""
     clock = Asleep()
     one.robot.watch = TickWatch(clock)
     one.robot.watch.begin()
@@ -81,7 +81,7 @@ class TestFrozen:
     async def test_a_freeze_is_the_reason_even_if_the_drive_is_checked_first(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """After a freeze the program seems to have said nothing for as long."""
+        """After a freeze the program seems to have been silent for as long."""
         monkeypatch.setattr(controller, "HAZARD_SECONDS", 0.0)
         async with spoken() as one:
             robot = one.robot
@@ -104,7 +104,7 @@ class TestFrozen:
             one.robot.alone = lambda: "the program says nothing"
             await one.take(id=1, do="go", to=[8.0, 3.0, 0.0])
             await until(lambda: one.state().hazard)
-            await one.robot.passing.sleep(0.2)  # in which its silence is noticed
+            await one.robot.passing.sleep(0.2)  # it notices the program's silence
             monkeypatch.setattr(controller, "HAZARD_SECONDS", 0.0)
             frozen(one)
             await until(lambda: one.said)
@@ -142,6 +142,6 @@ class TestFrozen:
             one.robot.watch_ticks()
             clock.now += 5.0
             beating = asyncio.create_task(one.process.beat())
-            await until(lambda: one.said)  # it goes on telling how it is, as nothing is late
+            await until(lambda: one.said)  # it goes on reporting, as nothing is late
             beating.cancel()
             assert one.state().stopped == "" and one.state().frozen == 0.0

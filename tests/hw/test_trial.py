@@ -19,7 +19,7 @@ SECONDS = 0.4
 
 
 def driven(folder: Path, **drivers: str) -> Robot:
-    """Return the shipped robot with drivers of its own."""
+    """Return the shipped robot with other drivers."""
     path = folder / "mine.toml"
     lines = [f"{name} = {{ {settings} }}" for name, settings in drivers.items()]
     shipped = load_robot().file.read_text(encoding="utf-8")
@@ -64,9 +64,9 @@ async def test_each_device_gets_one_sentence(tmp_path: Path) -> None:
     assert "did you mean 'rosbridge'?" in found["arms"].text
     assert found["stop_button"].absent
     assert "[drivers] in mine.toml" in found["stop_button"].text
-    assert list(found)[:2] == ["stop_button", "laser"]  # as in the profile
+    assert list(found)[:2] == ["stop_button", "laser"]  # in the profile's order
     await asyncio.sleep(0)
-    assert not server.measuring  # what was opened is closed
+    assert not server.measuring  # opened devices are closed
     await server.close()
 
 

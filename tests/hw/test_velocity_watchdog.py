@@ -126,7 +126,7 @@ async def test_an_invalid_line_is_refused() -> None:
 
 
 class Noting(VelocityWatchdog):
-    """A watchdog without a child; it keeps what the robot process reports."""
+    """A watchdog without a child; it records the robot process's reports."""
 
     def __init__(self, url: str) -> None:
         super().__init__(url, lives=0.2)
@@ -136,7 +136,7 @@ class Noting(VelocityWatchdog):
         """Start nothing."""
 
     def note(self, *, drives: bool) -> None:
-        """Keep whether a command drives."""
+        """Record whether a command drives."""
         self.noted.append(drives)
 
 

@@ -33,7 +33,7 @@ class Broken:
 
 
 class Scene:
-    """A voice, its clock, and what happened."""
+    """A voice, its clock, and the events."""
 
     def __init__(self, folder: Path) -> None:
         self.clock = Clock()
@@ -64,7 +64,7 @@ class Scene:
         return voice
 
     async def hear(self) -> None:
-        """Let the line that is spoken now be heard."""
+        """Let the current line end."""
         await self.clock.somebody_sleeps()
         self.clock.pass_by(SECONDS)
 

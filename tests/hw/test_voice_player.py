@@ -25,7 +25,7 @@ from tests.hw.speakers import Clock, program
 
 @pytest.fixture
 def wav(tmp_path: Path) -> Path:
-    """Two seconds of silence, under a name that looks like nothing else."""
+    """Two seconds of silence, under a unique name."""
     path = tmp_path / "-q it's; $(a) sound.wav"
     with wave.open(str(path), "wb") as file:
         file.setparams((1, 2, 8_000, 0, "NONE", ""))
@@ -34,7 +34,7 @@ def wav(tmp_path: Path) -> Path:
 
 
 class Playing:
-    """A player that tells of itself through a named pipe, and plays for ever."""
+    """An endless player that reports through a named pipe."""
 
     def __init__(self, folder: Path) -> None:
         self._pipe = folder / "told"
@@ -68,9 +68,9 @@ async def test_stop_ends_playback_at_once(tmp_path: Path, wav: Path) -> None:
     heard = asyncio.create_task(playing.player.play(wav))
     pid = await playing.pid()
     playing.player.stop()
-    await heard  # what was stopped on purpose has not failed
+    await heard  # a player that was stopped on purpose has not failed
     assert not is_there(pid)
-    playing.player.stop()  # nothing plays, and nothing happens
+    playing.player.stop()  # without a player, this does nothing
 
 
 async def test_cancelling_playback_ends_the_player(tmp_path: Path, wav: Path) -> None:

@@ -191,7 +191,7 @@ def test_the_oldest_files_are_removed_from_a_full_cache(speaker: Speaker, tmp_pa
     made = [synthesiser.render(f"<speak>{n}</speak>") for n in range(10)]
     for age, path in enumerate(reversed(made)):
         os.utime(path, (1e9 - age, 1e9 - age))
-    synthesiser.render("<speak>0</speak>")  # used again: it is the oldest no more
+    synthesiser.render("<speak>0</speak>")  # used again: it is no longer the oldest
     newest = synthesiser.render("<speak>new</speak>")
     left = set(kept(synthesiser))
     assert sum(path.stat().st_size for path in left) <= 10 * one
@@ -218,7 +218,7 @@ def test_cached_speech_with_names_can_be_deleted(synthesiser: Synthesiser) -> No
 
 
 def test_two_programs_and_many_threads_share_a_folder(speaker: Speaker, tmp_path: Path) -> None:
-    room = 3 * len(from_pipe(2.0))  # so that they drop each other's all the time
+    room = 3 * len(from_pipe(2.0))  # so that they keep dropping each other's files
     both = [Synthesiser(tmp_path / "c", which=speaker.which, most_bytes=room) for _ in range(2)]
 
     def speak(number: int) -> float:

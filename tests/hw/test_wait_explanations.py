@@ -9,7 +9,7 @@ from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_process.wait_explanations import AFTER_SECONDS, AGAIN_SECONDS, WaitExplanations
 
 WORDS = {"walking": "After you.", "standing": "May I?"}
-LONGEST = 5.0  # s for which nobody has to wait without hearing why
+LONGEST = 5.0  # s after which every wait must have been explained
 
 
 async def said(yields_to: list[BlockingPerson], *, halted: bool = False) -> list[tuple[float, str]]:

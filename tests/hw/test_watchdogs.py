@@ -26,7 +26,7 @@ def saying(**said: Reading) -> dict[str, Callable[[], Reading]]:
 
 
 def hazard(reading: Reading) -> str:
-    """Say why the robot must not drive while one device says this, and all others are well."""
+    """Return why the robot must not drive if one device reports this; all others are healthy."""
     return Watchdogs(ROBOT, saying(**{reading.device: reading})).hazard()
 
 
@@ -96,7 +96,7 @@ def test_a_laser_without_variety_stops_the_robot() -> None:
     assert hazard(blind) == "laser scanner sees nothing new"
     assert hazard(Reading("laser", facts={"near_share": 0.0, "variety": 0})) != ""
     assert hazard(Reading("laser", facts={"near_share": 0.0, "variety": BLIND})) == ""
-    assert hazard(Reading("laser", facts={"near_share": 0.0})) == ""  # a second is not over yet
+    assert hazard(Reading("laser", facts={"near_share": 0.0})) == ""  # the second is not over yet
 
 
 def test_the_limits_match_the_diagnosis_of_a_covered_laser() -> None:

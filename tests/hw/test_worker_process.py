@@ -217,7 +217,7 @@ class TestSupervisor:
 
 @dataclass(frozen=True)
 class Child:
-    """One of our child processes: its first lines, a request, and the answer."""
+    """One of the child processes: its first lines, a request, and the answer."""
 
     command: Sequence[str]
     begins: Sequence[Mapping[str, Any]]
@@ -228,7 +228,7 @@ class Child:
 
 @pytest.fixture(params=["camera", "chest", "speech", "device simulator"])
 def child(request: pytest.FixtureRequest, tmp_path: Path) -> Child:
-    """Each of our children in turn."""
+    """Each of the children in turn."""
     module = "-P", "-m"
     if request.param == "speech":
         return Child(recogniser.WORKER, [], {"id": 8, "pieces": ""}, "found")
@@ -270,7 +270,7 @@ class TestChildren:
                     for line in child.begins:
                         written = worker.tell(line)
                         assert written is not None
-                        written.result(PATIENCE)  # or what follows would come between its parts
+                        written.result(PATIENCE)  # else the next line would come between its parts
             worker.tell(child.asks)
             assert heard(child.answers)
         finally:
@@ -320,7 +320,7 @@ SCRIPTS = {
 
 @pytest.fixture(params=["camera", "chest"])
 def owner(request: pytest.FixtureRequest) -> Any:
-    """Each that keeps a child in turn."""
+    """Each owner of a child in turn."""
     if request.param == "camera":
         return Camera(CameraSource("none", "file", "/none"))
     return WebChestScreen(port=0)

@@ -1,4 +1,4 @@
-"""Waiting for what others do in their own time."""
+"""Waiting for events that others cause."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ PATIENCE = 10.0
 
 
 async def until(so: Callable[[], bool], patience: float = PATIENCE) -> None:
-    """Wait until something is so.
+    """Wait until a condition is true.
 
     Raises:
-        AssertionError: it is not so in time.
+        AssertionError: the condition is not true in time.
     """
     for _ in range(round(patience * 100)):
         if so():
