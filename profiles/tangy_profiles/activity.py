@@ -126,7 +126,7 @@ class Activity:
         return label or f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
 
     def not_yet(self, situation: Situation) -> str:
-        """Say in plain words that a situation has not been shown yet."""
+        """Name a situation that has not been shown yet; an activity may have other words for it."""
         stage, request, user_state = situation
         if self.reads(stage):
             state = next((s for s in self.user_states if s.name == user_state), None)
@@ -134,7 +134,7 @@ class Activity:
         else:
             rules = (rule for rule in self.stage_rules if rule.stage == stage)
             words = next((w for rule in rules if (w := rule.not_yet.get(request))), "")
-        return words or f"not shown yet: {self.in_words(situation)}"
+        return words or self.in_words(situation)
 
     def host_words(self, situation: Situation) -> str:
         """Return what a host might do in a situation, with {name} for the person; "" if unknown."""
