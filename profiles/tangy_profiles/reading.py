@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import os
+import re
 import reprlib
 import tomllib
 from collections.abc import Container, Iterable, Iterator, Mapping
@@ -22,10 +23,15 @@ _SHORT = reprlib.Repr()
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
 
 _MET = {
-    "Illegal character '\\n'": "this text has no quotation mark at its end",
-    "Invalid value": "this is no value; a text needs quotation marks around it",
+    "illegal character '\\n'": "this text has no quotation mark at its end",
+    "invalid value": "this is no value; a text needs quotation marks around it",
+    "invalid initial character for a key part": "a key should stand here; look for a comma too many"
+    " before it, or for {...} that goes on in the next line",
+    "unclosed array": "a comma or ] is missing before this",
+    "unclosed inline table": "a comma or } is missing before this",
+    "expected '=' after a key in a key/value pair": "after a key = is missing",
 }
-"""What the TOML parser says of the commonest mistakes, in words for authors."""
+"""What the TOML parser says of the commonest mistakes (in any case), in words for authors."""
 
 
 def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
@@ -258,7 +264,7 @@ def _in_words(error: tomllib.TOMLDecodeError) -> str:
     """Say what an author can look for where the parser names only what it met."""
     told = str(error)
     for met, words in _MET.items():
-        told = told.replace(met, words)
+        told = re.sub(re.escape(met), words, told, flags=re.IGNORECASE)
     return told
 
 

@@ -61,6 +61,8 @@ def _games(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
         "steps": game.steps,
         "seconds": replay.seconds if replay.timed else None,
         "stopped": game.stopped,
+        "due": game.due,
+        "rounds_left": game.rounds_left,
         "critical_faults": game.critical,
         "other_faults": game.other,
         "pauses": game.pauses[0],
@@ -183,7 +185,8 @@ TABLES = (
     DataTable(
         "games",
         (*HEAD, "number", "begun", "ended", "activity", "policy", "digest", "people", "steps",
-         "seconds", "stopped", "critical_faults", "other_faults", "pauses", "paused_seconds"),
+         "seconds", "stopped", "due", "rounds_left", "critical_faults", "other_faults",
+         "pauses", "paused_seconds"),
         _games,
     ),
     DataTable(

@@ -99,11 +99,16 @@ def test_an_unknown_key_is_refused_with_a_suggestion() -> None:
 @pytest.mark.parametrize(
     ("line", "told"),
     [
+        ("b = [{ c = 1, }]", "look for a comma too many before it"),
+        ("b = [{ c = 1,\n d = 2 }]", "{...} that goes on in the next line"),
+        ("b = [1\nc = 2", "a comma or ] is missing before this (at line 3, column 1)"),
+        ("b = { c = 1 d = 2 }", "a comma or } is missing before this"),
+        ("b = { c: 1 }", "after a key = is missing"),
         ('b = "open', "this text has no quotation mark at its end (at line 2, column 10)"),
         ("b = open", "a text needs quotation marks around it (at line 2, column 5)"),
     ],
 )
-def test_a_text_without_its_quotation_marks_is_named(tmp_path: Path, line: str, told: str) -> None:
+def test_the_commonest_mistakes_of_toml_are_named(tmp_path: Path, line: str, told: str) -> None:
     file = tmp_path / "a.toml"
     file.write_text(f"a = 1\n{line}\nc = 2\n", encoding="utf-8")
     with pytest.raises(ProfileError) as raised:
