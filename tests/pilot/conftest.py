@@ -1,4 +1,4 @@
-"""What the tests of screens share: reading the screen, typing at a known moment, sample people.
+"""Fixtures of the screens' tests: reading the screen, typing at a known moment, sample people.
 
     async def test_something(run: Run) -> None:
         async with run(HomeScreen()) as pilot:
@@ -6,10 +6,10 @@
             await pilot.pause()
             assert "Did you say" in pilot.text()
 
-`run(screen)` starts Tangy with a screen and gives the pilot; its clock stands still at 0, so that
-dialogs take keys at once (keys are stamped by the real clock) and a robot walks only when told.
+`run(screen)` starts Tangy with a screen and yields the pilot; its clock stands still at 0, so that
+dialogs take keys at once (the real clock stamps keys) and a robot moves only on command.
 Types are for the type checker only (`if TYPE_CHECKING: from tests.pilot.conftest import Run`):
-at run time a module called conftest may be any folder's.
+at run time a module called conftest may be that of any folder.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ LARGE = (160, 45)
 
 
 def screen_lines(app: App[Any]) -> list[str]:
-    """Return what can be read on the screen, line by line, without spaces at the ends."""
+    """Return the readable text of the screen, line by line, without trailing spaces."""
     strips = app.screen._compositor.render_strips()
     return ["".join(segment.text for segment in strip).rstrip() for strip in strips]
 
 
 def screen_text(app: App[Any]) -> str:
-    """Return what can be read on the screen."""
+    """Return the readable text of the screen."""
     return "\n".join(screen_lines(app))
 
 
@@ -96,12 +96,12 @@ def _to_be_painted(screen: Screen[Any]) -> bool:
 
 
 async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -> None:
-    """Wait until a program has done what there was to do, and waits for keys or for time to pass.
+    """Wait until a program is idle: it waits for keys, or for time to pass.
 
-    Textual watches the processor to find out, for 20 ms or 40 at every key and every pause; half
-    of the time of these tests went by like that. The loop knows at once: nothing in it can run,
-    nothing is left to be painted, the window is not being resized. Only while a worker's thread
-    is at work is the processor watched as Textual does it.
+    To find out, Textual watches the processor for 20 or 40 ms at every key and pause; that took
+    half of the time of these tests. The loop knows at once: no callback is ready, nothing remains
+    to be painted, the window is not being resized. The processor is watched as Textual does it
+    only while a worker's thread is running.
     """
     loop: Any = asyncio.get_running_loop()
     start, began = monotonic(), process_time()
@@ -109,11 +109,11 @@ async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -
     while process_time() - began < most and monotonic() - start < PATIENCE:
         thread = any(worker._thread_worker and worker.is_running for worker in app.workers)
         used = process_time() if thread else 0.0
-        await asyncio.sleep(GLANCE if thread else 0)  # the loop looks what has arrived, too
+        await asyncio.sleep(GLANCE if thread else 0)  # lets the loop poll for events, too
         thinks = thread and process_time() - used >= GLANCE / 20
         screen = app._screen_stack[-1] if app._screen_stack else None
         if app._resize_event is not None:
-            await asyncio.sleep(1 / 120)  # so long Textual waits for a window's last size
+            await asyncio.sleep(1 / 120)  # Textual waits this long for a window's last size
             quiet = 0
         elif loop._ready or thinks:
             quiet = 0
@@ -130,15 +130,15 @@ class TangyPilot(Pilot[None]):
     """A pilot that can also read the screen, and type several keys in one go."""
 
     def text(self) -> str:
-        """Return what can be read on the screen."""
+        """Return the readable text of the screen."""
         return screen_text(self.app)
 
     def lines(self) -> list[str]:
-        """Return what can be read on the screen, line by line."""
+        """Return the readable text of the screen, line by line."""
         return screen_lines(self.app)
 
     def type(self, *keys: str, at: float | None = None) -> None:
-        """Type keys in one go; they are there after the next `pause`."""
+        """Type keys at once; they have arrived after the next `pause`."""
         type_at_once(self.app, *keys, at=at)
 
 
@@ -153,7 +153,7 @@ class StillClock:
         return self.now
 
     def advance(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance the clock."""
         self.now += seconds
 
 
@@ -166,17 +166,17 @@ class Sample:
 
     @staticmethod
     def of(people: int) -> Sample:
-        """Return a sample with so many people."""
+        """Return a sample with this many people."""
         return Sample(people=load_people(people))
 
     def scene(self, place: str = FRONT, asking: tuple[str, ...] = ("user2",)) -> Scene:
-        """Return a scene in which somebody asks for help."""
+        """Return a scene in which people ask for help."""
         words = ("marks B-7", "asks for help", "watches", "moves the card")
         doing = {p.id: words[n % 4] for n, p in enumerate(self.people)}
         return Scene(place, asking, doing, (7, 22, 31), None)
 
     def beliefs(self) -> dict[str, Beliefs]:
-        """Return beliefs of all sorts: unknown, vague, sure."""
+        """Return different beliefs: unknown, vague, certain."""
         counts = ((7, 2), (1, 3), (0, 0), (40, 60))
         strategies = ("neutral", "praise", "suggestion", "scarcity")
         return {
@@ -206,7 +206,7 @@ def _parse_once(
 ) -> list[RuleSet]:
     """Parse a style sheet once for all programs that tests start.
 
-    Textual keeps what it parsed for one program, of which a person starts one and tests a thousand.
+    Textual caches sheets per program; a person starts one program, and the tests start a thousand.
     """
     variables = tuple(sheet._variables.items())
     key = (css, read_from, is_default_rules, tie_breaker, scope, variables)
@@ -217,7 +217,7 @@ def _parse_once(
 
 @pytest.fixture(scope="session", autouse=True)
 def _style_sheets() -> Iterator[None]:
-    """Let all programs share what was parsed of the same style sheets."""
+    """Let all programs share parsed style sheets."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Stylesheet, "_parse_rules", _parse_once)
         yield
@@ -225,9 +225,9 @@ def _style_sheets() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _garbage() -> Iterator[None]:
-    """Let no game that begins freeze all objects, as the program does: it plays one, and we many.
+    """Keep games from freezing all objects, as the program does: it plays one game, tests many.
 
-    What was frozen is never freed, and each time all of it is looked through first.
+    Frozen objects are never freed, and each freeze first examines all of them.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(gc, "freeze", lambda: None)
@@ -290,7 +290,7 @@ def draw() -> Callable[[App[Any]], str]:
 
 @pytest.fixture
 def looks(snapshot: SnapshotAssertion) -> Callable[[App[Any]], None]:
-    """Compare what can be read on the screen, cell by cell, with what is kept of it."""
+    """Compare the readable text of the screen, cell by cell, with its snapshot."""
 
     def compare(app: App[Any]) -> None:
         assert screen_text(app) == snapshot
@@ -302,7 +302,7 @@ def looks(snapshot: SnapshotAssertion) -> Callable[[App[Any]], None]:
 def picture(
     snapshot: SnapshotAssertion, draw: Callable[[App[Any]], str]
 ) -> Callable[[App[Any]], None]:
-    """Compare the screen with its SVG picture: for the few whose colours say something."""
+    """Compare the screen with its SVG picture: for the few screens whose colours carry meaning."""
     pictures = snapshot.use_extension(SVGImageSnapshotExtension)
 
     def compare(app: App[Any]) -> None:
@@ -315,6 +315,6 @@ def picture(
 def policy(
     workspace: Workspace, cover: Callable[[str, int, int], tuple[Demonstration, ...]]
 ) -> Policy:
-    """A policy that knows all that comes about, learnt by few trees."""
+    """A policy that covers every situation, learned by few trees."""
     settings = ForestSettings(trees=5)
     return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), settings)

@@ -1,4 +1,4 @@
-"""Ears and a voice that hear and say what a test wants, when it wants it."""
+"""Ears and a voice that tests control."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from tangy_tui.speech.input import SpeechInput
 
 @dataclass
 class FakeMeter:
-    """Shows the level it was given."""
+    """Shows the given level."""
 
     level: float = 0.0
 
 
 class FakeEars:
-    """Stands in for `SpeechInput`: a test says what is heard. As with that, an open question shuts
-    out commands, and answers are heard only if that is switched on.
+    """Stands in for `SpeechInput`: a test decides the heard utterances. As in the original, an open
+    question blocks commands, and answers are heard only if that is switched on.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class FakeEars:
 
     @property
     def ears(self) -> SpeechInput:
-        """Itself, for those who want real ears."""
+        """Itself, in the place of real ears."""
         return cast(SpeechInput, self)
 
     def be(
@@ -62,7 +62,7 @@ class FakeEars:
         level: float = 0.0,
         trouble: SoundTrouble | None = None,
     ) -> None:
-        """Be in another state."""
+        """Change the state."""
         self.state, self.words, self.trouble = state, words, trouble
         self.meter.level = level
         self.changed()
@@ -72,7 +72,7 @@ class FakeEars:
         self.followed += events
 
     def talk(self) -> None:
-        """Begin to listen, or end it."""
+        """Begin or end listening."""
         if self.state in ("off", "listening"):
             self.be("listening" if self.state == "off" else "thinking")
 
@@ -86,7 +86,7 @@ class FakeEars:
         self.be("off" if self.live and not self.hands_free else "listening")
 
     def asking(self, asks: bool, choices: Sequence[str] = ()) -> None:
-        """Take note that a question is open."""
+        """Record that a question is open."""
         self.asks = asks
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
@@ -94,7 +94,7 @@ class FakeEars:
         self.books.append(phrasebook)
 
     def hear(self, *heard: Say | StopCommand | Reply) -> None:
-        """Let this be heard, unless it cannot be because a question is open."""
+        """Hear this, unless an open question blocks it."""
         for one in heard:
             wanted = isinstance(one, StopCommand) or (
                 self.answers if isinstance(one, Reply) else True
@@ -105,7 +105,7 @@ class FakeEars:
                 self._coming.put_nowait(one)
 
     def _begin_to_speak(self) -> None:
-        """Pass through the state in which an answer begins, unless a test did so before."""
+        """Pass through the state in which an answer begins, unless a test has done so."""
         before = self.state
         if before not in ("speaking", "thinking"):
             self.be("speaking" if self.live else "thinking")
@@ -119,7 +119,7 @@ class FakeEars:
         return Say(words, confidence, commands, sure)
 
     def end(self) -> None:
-        """Let the source be over."""
+        """End the source."""
         self._coming.put_nowait(None)
 
     def __aiter__(self) -> FakeEars:
@@ -134,12 +134,12 @@ class FakeEars:
         return heard
 
     async def close(self) -> None:
-        """Take note."""
+        """Record the end."""
         self.closed = True
 
 
 class FakeVoice:
-    """Stands in for `Voice`: a test says when a line was heard."""
+    """Stands in for `Voice`: a test decides when a line has been heard."""
 
     def __init__(
         self, begin: Callable[[], None], end: Callable[[], None], silent: str = ""
@@ -169,7 +169,7 @@ class FakeVoice:
         return self._line
 
     def heard(self, to_the_end: bool = True) -> None:
-        """Let the line be heard."""
+        """Mark the line as heard."""
         line, self._line = self._line, None
         if line is not None:
             line.set_result(to_the_end)

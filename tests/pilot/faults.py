@@ -1,4 +1,4 @@
-"""What the tests of the fault console share: the program with a game in which faults can come."""
+"""Helpers for tests of the fault console: the program with a game in which faults can come."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def playing(
 
 
 def game_of(pilot: TangyPilot) -> tuple[PlayScreen, Supervision, FaultyWorld]:
-    """Return the playing screen, what supervises its games, and their world."""
+    """Return the playing screen, its games' supervision, and their world."""
     screen = next(s for s in pilot.app.screen_stack if isinstance(s, PlayScreen))
     world = screen.control.supervision.world
     assert isinstance(world, FaultyWorld)
@@ -55,14 +55,14 @@ async def halted(pilot: TangyPilot) -> CriticalDialog:
 
 
 async def halting(pilot: TangyPilot, kind: str = "emergency-stop") -> CriticalDialog:
-    """Pause the game, bring about a critical fault, and wait for its dialog."""
+    """Pause the game, inject a critical fault, and wait for its dialog."""
     await pilot.press("p")
     game_of(pilot)[2].inject(kind)
     return await halted(pilot)
 
 
 async def asked(pilot: TangyPilot) -> AskingPanel:
-    """Wait until Tangy asks and a command can be typed."""
+    """Wait until Tangy asks and accepts a command."""
     screen = game_of(pilot)[0]
     await until_shown(pilot, lambda: screen.query(AskingPanel))
     await until_shown(pilot, lambda: any(not bar.closed for bar in screen.query(CommandBar)))
@@ -70,7 +70,7 @@ async def asked(pilot: TangyPilot) -> AskingPanel:
 
 
 async def sure(pilot: TangyPilot, key: str) -> None:
-    """Press a key that asks whether it is meant, and say yes."""
+    """Press a key that asks for confirmation, and say yes."""
     await pilot.press(key)
     await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
     asked = pilot.app.screen
@@ -79,15 +79,15 @@ async def sure(pilot: TangyPilot, key: str) -> None:
 
 
 def kinds_of(fault: Fault) -> list[str]:
-    """Return the moves about a fault, in order."""
+    """Return the kinds of a fault's moves, in order."""
     return [move.kind for move in fault.moves]
 
 
 def seen(pilot: TangyPilot) -> str:
-    """Return what can be read, on one line."""
+    """Return the readable text, on one line."""
     return " ".join(pilot.text().split())
 
 
 def sentences(screen: PlayScreen) -> list[str]:
-    """Return what stands in the log."""
+    """Return the sentences of the log."""
     return list(screen.query_one(LogView).sentences)

@@ -1,4 +1,4 @@
-"""Live games for tests of screens: a robot process that is none, and a program."""
+"""Live games for tests of screens: a fake robot process, and a program."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class HeldLink(FakeLink):
 
     def wait(self, asked: Any, seconds: float = 0.0) -> bool:
         free = self.free and len(self.said) <= self.most
-        sleep(0.005)  # or a game would be over before anybody has pressed a key
+        sleep(0.005)  # else a game would be over before a key is pressed
         return free or any(told.startswith("stop") for told in self.told)
 
     def stop(self, why: str, by: str = STAFF) -> None:
@@ -68,7 +68,7 @@ class HeldLink(FakeLink):
         self.state = replace(self.state, health=health)
 
     def be_let(self) -> None:
-        """Wait to be let, but not for ever: a screen that is held up as well could not let it."""
+        """Wait for permission, with a limit: a blocked screen could not give it."""
         for _ in range(1000):
             if self.free:
                 break
@@ -93,14 +93,14 @@ def live_world(
         workspace.room,
         seed=1,
         names=workspace.names,
-        pace=0.0,  # its time stands still while nothing is done
+        pace=0.0,  # its time stands still between actions
     )
 
 
 def live_program(
     workspace: Workspace, world: LiveWorld, policy: Policy, ears: FakeEars | None = None
 ) -> Program:
-    """Make a program that opens with the live screen, and with ears if it is given any."""
+    """Make a program that opens with the live screen, and with these ears, if any."""
     supervision = workspace.supervision(policy, 1, asks=True, world=world)
 
     async def start(program: Program) -> None:
@@ -129,7 +129,7 @@ async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
 
 
 async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
-    """Let it do some steps, and pause."""
+    """Let it take some steps, and pause."""
     await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= steps)
     live(pilot).control.apply(Pause())
     await until_shown(pilot, lambda: not live(pilot).working)

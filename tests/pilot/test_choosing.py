@@ -49,7 +49,7 @@ class Asking(TangyScreen[None]):
         ("o s c enter", "oscar"),
         ("slash c h r i s t o p h e r enter", "christopher"),
         ("r o s down enter", "anna rose"),
-        ("b e n enter", "ben"),  # not Big Ben, who comes first
+        ("b e n enter", "ben"),  # not Big Ben, who is first
         ("a n n a space r enter", "anna rose"),
         ("2 4 enter", "user 24"),
         ("x x escape enter", "rosa"),
@@ -57,7 +57,7 @@ class Asking(TangyScreen[None]):
         ("j enter escape escape", None),
         ("escape", None),
         ("z o e enter", "zoë"),
-        ("h e r e enter escape escape", None),  # what stands beside the names does not count
+        ("h e r e enter escape escape", None),  # text beside the names does not count
     ],
 )
 async def test_letters_filter_enter_chooses_and_esc_goes_back(

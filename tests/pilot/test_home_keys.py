@@ -85,7 +85,7 @@ async def test_v_asks_before_a_live_game_on_the_bench(
             await until_shown(pilot, lambda: isinstance(pilot.app.screen, SetUpScreen))
             await pilot.press(answer)
             await until_shown(pilot, lambda: not isinstance(pilot.app.screen, SetUpScreen))
-            if answer == "escape":  # home opens nothing while something is being closed
+            if answer == "escape":  # home opens nothing during a closing
                 await until_shown(pilot, lambda: all(w.is_finished for w in pilot.app.workers))
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)

@@ -30,7 +30,7 @@ class Terminal:
         assert place is not None
         assert 2 <= int(place[1]) <= 24
         assert 1 <= int(place[2]) <= 80
-        shift = 1 + (1 - self.base)  # Textual takes one off; some terminals count from 0
+        shift = 1 + (1 - self.base)  # Textual subtracts one; some terminals count from 0
         self.trip.reported(int(place[2]) - shift, int(place[1]) - shift, self.now)
 
 
@@ -39,7 +39,7 @@ def test_only_the_answer_to_the_current_query_counts(base: int) -> None:
     terminal = Terminal(base=base)
     terminal.answer()
     terminal.trip.ask(terminal.seen.append)
-    terminal.answer(1)  # what the terminal was asked at its start
+    terminal.answer(1)  # the query at the terminal's start
     assert terminal.seen == []
     terminal.now = 12.0
     terminal.answer()
@@ -58,7 +58,7 @@ def test_query_positions_are_unique_and_never_in_the_first_line() -> None:
 @pytest.mark.parametrize("modifier", range(2, 9))
 def test_shift_f3_is_never_taken_for_an_answer(modifier: int) -> None:
     terminal = Terminal()
-    for _ in range(2000):  # every place was the one that waits
+    for _ in range(2000):  # every position was the awaited one
         terminal.trip.ask(terminal.seen.append)
         terminal.trip.reported(modifier - 1, 0, terminal.now)  # CSI 1;2R, as Textual reads it
     assert terminal.seen == []

@@ -38,13 +38,13 @@ class Terminal:
         self._stream.feed(text.replace("\n", "\r\n"))
 
     def cells(self) -> list[list[Any]]:
-        """Return every cell with what can be seen of its colours and attributes."""
+        """Return every cell with its visible colours and attributes."""
         columns, lines = self.screen.columns, self.screen.lines
         return [[visible(self.screen.buffer[y][x]) for x in range(columns)] for y in range(lines)]
 
 
 def visible(cell: Any) -> Any:
-    """Leave out the ink of a cell that shows nothing."""
+    """Leave out the ink of a blank cell."""
     if cell.data == " " and not (cell.reverse or cell.underscore or cell.strikethrough):
         return cell._replace(fg="", bold=False, italics=False, blink=False)
     return cell
@@ -74,7 +74,7 @@ LINES = st.lists(
 
 @st.composite
 def updates(draw: st.DrawFn) -> LayoutUpdate:
-    """Draw lines of cells that begin and end anywhere on the screen."""
+    """Draw segments of lines anywhere on the screen."""
     x = draw(st.integers(0, WIDTH - 4))
     y = draw(st.integers(0, HEIGHT - 1))
     width = draw(st.integers(3, WIDTH - x))
@@ -101,7 +101,7 @@ def test_differential_updates_show_the_same_as_full_updates(
 
 
 def shown(terminal: Terminal, row: int) -> list[Any]:
-    """Return a row, but for halves of wide characters whose other half was overwritten."""
+    """Return a row without halves of wide characters whose other half was overwritten."""
     cells = terminal.cells()[row]
     wide = [len(cell.data.encode()) > 2 and cell.data != "─" for cell in cells]
     return [

@@ -42,7 +42,7 @@ TINY = (60, 18)
 
 
 def gap(workspace: Workspace) -> Situation:
-    """Return the situation that is left out: what comes first when a number is called."""
+    """Return the missing situation: the first one after which a number is called."""
     expected = workspace.activity.expected
     return next(s for s in workspace.activity.situations if expected[s] == "call number")
 
@@ -67,7 +67,7 @@ def playing(
 
 
 async def asked(pilot: TangyPilot) -> PlayScreen:
-    """Wait until Tangy asks and a command can be typed."""
+    """Wait until Tangy asks and accepts a command."""
     while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.query(AskingPanel)):
         await pilot.pause(0.02)
     while all(bar.closed for bar in pilot.app.screen.query(CommandBar)):
@@ -280,7 +280,7 @@ async def test_a_stop_holds_the_answer_until_the_release(
         await pilot.press("escape", "p")
         await pilot.pause()
         assert "STOPPED" not in screen_text(pilot.app)
-        await pilot.press(*["backspace"] * len(".E:"))  # letters go to the line, also then
+        await pilot.press(*["backspace"] * len(".E:"))  # letters still go to the line
         await answer(pilot)
         while screen.control.supervision.question is not None:
             await pilot.pause(0.02)

@@ -58,7 +58,7 @@ def playing(
 
 
 async def asked(pilot: TangyPilot) -> PlayScreen:
-    """Wait until Tangy asks and an answer can be given."""
+    """Wait until Tangy asks and accepts an answer."""
     while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.query(AskingPanel)):
         await pilot.pause(0.02)
     while not pilot.app.screen.query_one(AskingPanel).listens:

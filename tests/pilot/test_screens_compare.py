@@ -33,7 +33,7 @@ TINY = (60, 18)
 
 
 def found(workspace: Workspace, behaviour: str) -> Situation:
-    """Return the situation in which something is expected."""
+    """Return the situation in which this behaviour is expected."""
     expected = workspace.activity.expected
     return next(s for s in workspace.activity.situations if expected[s] == behaviour)
 
@@ -64,7 +64,7 @@ async def shown(pilot: TangyPilot, kind: type) -> Any:
 
 
 async def compare_teachers(pilot: TangyPilot) -> CompareScreen:
-    """Choose the two teachers, who stand at the end of the list."""
+    """Choose the two teachers at the end of the list."""
     program: Any = pilot.app
     program.action_compare()
     await shown(pilot, ChooseDialog)
@@ -155,7 +155,7 @@ async def test_an_earlier_policy_can_be_opened(run: Run, workspace: Workspace) -
 
 
 def spoil(workspace: Workspace) -> None:
-    """Keep the last policy as another version would have learnt it."""
+    """Store the last policy as if another version had learned it."""
     kept = last_policy(workspace.store, workspace.activity.name)
     assert kept is not None
     rows = (kept.rows[0]._replace(behaviour="something else"), *kept.rows[1:])

@@ -45,7 +45,7 @@ def asked(drill: Drill) -> str:
 
 @pytest.fixture(scope="module")
 def learnt(tmp_path_factory: pytest.TempPathFactory) -> DrillPolicy:
-    """What drills are played by where nothing was learnt, shown once for all tests."""
+    """The policy of drills without demonstrations, made once for all tests."""
     folder = tmp_path_factory.mktemp("nothing") / "data"
     workspace = Workspace(folder)
     try:
@@ -80,12 +80,12 @@ def make(
 
 
 def drill_of(screen: DrillScreen) -> Drill:
-    """Return the drill of a screen."""
+    """Return a screen's drill."""
     return screen.drill
 
 
 def on_top(pilot: TangyPilot, screen: DrillScreen) -> bool:
-    """Whether a screen is the one that has the keys."""
+    """Return whether a screen has the focus."""
     return pilot.app.screen is screen
 
 
@@ -103,7 +103,7 @@ def right_key(drill: Drill) -> str:
 
 
 async def answer_round(pilot: TangyPilot, drill: Drill) -> None:
-    """Answer a round as is right."""
+    """Answer a round correctly."""
     while drill.question is not None:
         await pilot.press(right_key(drill))
         await pilot.pause()
@@ -235,7 +235,7 @@ async def test_keys_typed_ahead_do_not_answer(
         await pilot.press("enter")
         await pilot.pause()
         clock.now = monotonic() + 1000
-        await pilot.press("1")  # this question was there already
+        await pilot.press("1")  # this question had been there before
         await pilot.pause()
         assert drill.question is not None
         assert drill.question.kind == "do"

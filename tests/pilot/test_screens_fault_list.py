@@ -95,7 +95,7 @@ async def test_a_recovery_attempt_is_shown_before_its_result(
         assert "asks (1 of 2)" in pilot.lines()[1]
         assert "“Something covers my eyes. Could somebody please take it away?”" in text
         assert "robot WARN: Head camera covered" in pilot.lines()[0]
-        assert room.size.height == height or size == MIDDLE  # where the list comes up as well
+        assert room.size.height == height or size == MIDDLE  # where the list appears, too
         assert not any("recovered" in said for said in sentences(screen))
         await sure(pilot, "a")
         await pilot.pause()
@@ -244,5 +244,5 @@ async def test_every_kind_of_fault_can_be_injected(run: Run) -> None:
         pilot.app.push_screen(dialog)
         await pilot.pause()
         assert [kind.name for kind in dialog.kinds] == list(KINDS)
-        pilot.type(*"covered")  # what the console calls the fault, which the kind's name is not
+        pilot.type(*"covered")  # the console's name of the fault, not the kind's name
         await until_shown(pilot, lambda: [k.name for k in dialog.kinds] == ["camera-occluded"])

@@ -28,7 +28,7 @@ def tabbed(teaching: TeachingSession, phrase: str) -> list[str]:
 
 
 def begun(teaching: TeachingSession, phrase: str) -> list[str]:
-    """Return the keys of people who type whole words, until no other command begins so."""
+    """Return the keys of people who type whole words, until no other command begins with them."""
     meant = teaching.phrasebook.phrases[phrase]
     words = phrase.split()
     for count in range(1, len(words)):
@@ -66,7 +66,7 @@ async def test_a_guided_game_takes_few_keys(
             await pilot.press("y")
             keys += 1
             await pilot.pause()
-            # nothing is remarked on a game that is played well
+            # a game that is played well gets no remark
             assert isinstance(pilot.app.screen_stack[-1], TeachScreen)
     (shown,) = read_demonstrations(workspace.store, workspace.activity.name)
     seen = {step.state.situation for step in shown.steps}

@@ -95,7 +95,7 @@ async def test_the_dialog_reports_the_end_of_the_fault_and_one_call(
         _, _, world = game_of(pilot)
         dialog = await halting(pilot, "camera-frozen")
         assert "Still there: head camera" in seen(pilot)
-        assert "brightness" not in seen(pilot)  # it only says that it is not covered
+        assert "brightness" not in seen(pilot)  # it only says that the camera is not covered
         world.lift("camera-frozen")
         await until_shown(pilot, lambda: "It is gone now: press a, and r" in seen(pilot))
         await pilot.press("e", "e")

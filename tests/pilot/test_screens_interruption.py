@@ -28,7 +28,7 @@ STEPS = 9
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 

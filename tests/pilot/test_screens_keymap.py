@@ -30,14 +30,14 @@ from tests.support.waiting import until
 
 LETTERS = (*string.ascii_letters, "slash", "asterisk", "full_stop", "less_than_sign")
 
-ROOM = (160, 45)  # every panel of a screen can be seen, and so can have the keys
+ROOM = (160, 45)  # every panel of a screen is visible, and can have the focus
 
 Opens = Callable[[Program], Coroutine[Any, Any, None]]
 
 
 @pytest.fixture
 def taught(workspace: Workspace) -> Workspace:
-    """A workspace with a demonstration of somebody, and what was learnt from it."""
+    """A workspace with a demonstration, and the policy learned from it."""
     teaching = workspace.teaching(SCRIPTED, 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
@@ -72,16 +72,16 @@ async def play(program: Program) -> None:
 
 
 async def home(program: Program) -> None:
-    """Stay there."""
+    """Stay at home."""
 
 
 def kept(workspace: Workspace) -> list[int]:
-    """Return what is in the log, by its numbers."""
+    """Return the numbers of the log's events."""
     return [event.seq for event in workspace.store.events()]
 
 
 def changed(workspace: Workspace, before: list[int]) -> bool:
-    """Return whether the log has something new."""
+    """Return whether the log has a new event."""
     return kept(workspace) != before
 
 
@@ -107,7 +107,7 @@ async def test_no_letter_changes_stored_data_on_any_panel(
         for panel in (None, *panels):
             for letter in LETTERS:
                 if opens is play and letter in ("p", "full_stop"):
-                    continue  # the simulated game itself goes on by these
+                    continue  # these keys let the simulated game continue
                 screen.set_focus(panel)
                 pilot.type(letter)
                 await pilot.pause()
@@ -149,8 +149,8 @@ async def test_no_letter_changes_a_live_game_without_a_question(
         screen = live(pilot)
         for letter in LETTERS:
             if letter in STAFF_SAYS or letter in ("p", "d", "slash", *PACE):
-                # p goes on; in the dialog that d opens only arrows drive; / begins to filter;
-                # what one key of the pace does the other takes back
+                # p continues; in the dialog of d only arrows drive; / begins to filter;
+                # each key of the pace undoes the other
                 continue
             before, told = kept(taught), list(link.told)
             pilot.type(letter)
@@ -217,7 +217,7 @@ async def test_help_and_palette_list_every_action_of_a_screen(
         bound = {one.id or "" for one in made if isinstance(one, Binding) and one.id in BY_ID}
         bound = {id for id in bound if not BY_ID[id].fixed}
         here = {one.word for one in listed(screen)}
-        elsewhere = {"talk", "listen", "command", "zoom", "filter"}  # where there is a use for it
+        elsewhere = {"talk", "listen", "command", "zoom", "filter"}  # only where they have a use
         assert {BY_ID[str(id)].word for id in bound - elsewhere} <= here
         help = help_for(screen)
         assert len(help.here) + len(help.everywhere) >= len(here)

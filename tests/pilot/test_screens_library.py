@@ -41,7 +41,7 @@ SIZES = pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 
 @pytest.fixture(autouse=True)
 def _greenwich(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Let dates look the same everywhere."""
+    """Make dates look the same everywhere."""
     monkeypatch.setenv("TZ", "UTC")
     time.tzset()
     yield
@@ -73,7 +73,7 @@ def library_of(workspace: Workspace) -> Library:
 
 
 def states(workspace: Workspace) -> list[str]:
-    """Return why each demonstration is not learnt from (empty: it is)."""
+    """Return why each demonstration is excluded from learning (empty: it is used)."""
     return [entry.hidden for entry in library_of(workspace).entries.values()]
 
 
@@ -83,7 +83,7 @@ def program(workspace: Workspace, *keys: str) -> Program:
 
 
 async def press(pilot: TangyPilot, *keys: str) -> None:
-    """Press keys, one after another, each when what came before is on the screen."""
+    """Press keys in turn, each when the effect of the last one is on the screen."""
     for key in keys:
         await pilot.press(key)
         await pilot.pause()
@@ -95,7 +95,7 @@ def told(pilot: TangyPilot) -> str:
 
 
 async def wait_for(pilot: TangyPilot, kind: type[object]) -> None:
-    """Wait until a screen is open: what is learnt is learnt beside the screen."""
+    """Wait until a screen is open: learning runs in the background."""
     for _ in range(200):
         await pilot.pause(0.02)
         if isinstance(pilot.app.screen, kind):
@@ -223,7 +223,7 @@ async def test_leaving_a_screen_removes_its_messages(run: Run, workspace: Worksp
     async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "enter", "x", "y")
         assert told(pilot)
-        pilot.type("escape", "escape")  # the second comes when the screen has gone already
+        pilot.type("escape", "escape")  # the second comes when the screen has closed already
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
         assert not told(pilot)

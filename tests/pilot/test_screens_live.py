@@ -54,7 +54,7 @@ def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
 
 
 async def asked_about_the_next(pilot: TangyPilot) -> None:
-    """Wait until the question is there to be read: keys from before do not answer it."""
+    """Wait until the question is readable: earlier keys do not answer it."""
     await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
     await until_shown(pilot, lambda: "Next: " in screen_text(pilot.app))
     await pilot.pause()
@@ -372,7 +372,7 @@ async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLin
         await pilot.press("d")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
         await pilot.press("up", "left", "escape")
-        assert link.told.count("drive") == 3  # the last one stands still
+        assert link.told.count("drive") == 3  # the last one is a stop
         assert not isinstance(pilot.app.screen, DrivingDialog)
 
 
@@ -520,7 +520,7 @@ async def test_the_live_picture_in_the_readme_is_current(
     def ask_for_help(do: str, _: float) -> None:
         if do == "perform" and len(link.said) == 6:
             link.sign(2)
-        if do == "go":  # it stays on its way, and so does the game
+        if do == "go":  # the drive goes on, and so does the game
             link.free = False
 
     link.meanwhile = ask_for_help

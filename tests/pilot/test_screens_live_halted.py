@@ -49,7 +49,7 @@ def program(workspace: Workspace, link: HeldLink, policy: Policy) -> Program:
 
 
 def seen(pilot: TangyPilot) -> str:
-    """Return what can be read, on one line."""
+    """Return the readable text, on one line."""
     return " ".join(pilot.text().split())
 
 
@@ -71,7 +71,7 @@ async def halting(
 
 
 async def lives(pilot: TangyPilot, link: HeldLink) -> None:
-    """Wait until the screen has said again that it lives."""
+    """Wait until the screen has sent another sign of life."""
     stamps = link.stamps
     await until_shown(pilot, lambda: link.stamps > stamps + 1)
 
@@ -97,7 +97,7 @@ async def test_the_screen_stays_responsive_while_the_robot_process_restarts(
         finally:
             link.free = True
         await until_shown(pilot, lambda: f"{halts.RESTARTED} No expert is named" in seen(pilot))
-        assert link.told[-1] == "stop: staff stopped it"  # the new process is told as well
+        assert link.told[-1] == "stop: staff stopped it"  # the new process gets the command as well
         assert "r all is well" in pilot.text()
 
 
@@ -211,7 +211,7 @@ async def test_the_dialog_reports_each_call_and_repeats_a_failed_one(
         await until_shown(pilot, lambda: len(line.messages) == 2)
         line.says("Anna Berg", "sent")
         await until_shown(pilot, lambda: "has sent a message to Anna Berg" in seen(pilot))
-        await pilot.press("e")  # that call still waits for an answer
+        await pilot.press("e")  # that call is still unanswered
         assert len(line.messages) == 2
         line.says("Anna Berg", "answered", "I am on my way")
         await until_shown(

@@ -33,7 +33,7 @@ class Robot:
         people = tuple(self._workspace.names)
         self.groups.append(people)
         link = HeldLink(people)
-        link.most = 3  # calls, and no more
+        link.most = 3  # calls, at most
         self.links.append(link)
         try:
             yield live_world(self._workspace, link)
@@ -56,7 +56,7 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         first = live(pilot)
         called = tuple(first.world.called)
         first.control.apply(SetAutonomy("each"))
-        first.games += 1  # as with another game that follows
+        first.games += 1  # as if another game followed
         await pilot.press("L")
         await until_shown(pilot, lambda: "somebody new" in pilot.text())
         await pilot.press(*"new", "enter")
@@ -69,5 +69,5 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         assert robot.off == 1 and robot.groups[1] == (*robot.groups[0], "user5")
         assert workspace.name("user5") == "Berta"
         assert tuple(live(pilot).world.called)[: len(called)] == called
-        assert not live(pilot).control.going  # as it was before
+        assert not live(pilot).control.going  # as before
         assert live(pilot).control.autonomy.level == "each" and live(pilot).games == 2

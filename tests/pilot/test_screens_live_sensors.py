@@ -95,7 +95,7 @@ def make(workspace: Workspace, sensors: LinkedSensors) -> Callable[[], SensorsSc
 
 
 async def shown(pilot: TangyPilot, words: str) -> None:
-    """Wait until it says so."""
+    """Wait until the screen shows this."""
     await until_shown(pilot, lambda: words in pilot.text())
 
 
@@ -145,7 +145,7 @@ async def test_v_shows_the_camera_picture(
         await until_shown(pilot, lambda: len(link.asked_for) > 2)
         first, second = link.asked_for[:2]
         assert (first["after"], second["after"]) == (-1, 1)
-        link.pid = 2  # it was started again, and counts its pictures anew
+        link.pid = 2  # it restarted, and counts its pictures from the beginning
         count = len(link.asked_for)
         await until_shown(pilot, lambda: len(link.asked_for) > count)
         assert link.asked_for[count]["after"] == -1
@@ -203,7 +203,7 @@ async def test_the_live_sensors_match_their_snapshot(
     looks: Callable[[App[Any]], None],
 ) -> None:
     why = "Nothing can be seen in the picture."
-    # in the middle of what is rounded to a minute, however slowly this goes on
+    # in the middle of a minute before rounding, however slow the test is
     link.sight = replace(WELL, state="COVERED", why=why, seconds=785.0, age=185.0)
     link.looked = link.read = {**READ, "age": -9.0}
     async with run(make(), size) as pilot:
@@ -212,5 +212,5 @@ async def test_the_live_sensors_match_their_snapshot(
         await shown(pilot, BLOCK)
         await shown(pilot, "covered for 13 min")
         await shown(pilot, "covered, 3 min old")
-        await settled(pilot, lambda: draw(pilot.app))  # a bar comes a moment after long words
+        await settled(pilot, lambda: draw(pilot.app))  # a bar follows long words
         looks(pilot.app)

@@ -88,7 +88,7 @@ async def test_the_next_map_waits_three_times_as_long_as_the_last_took(
         await until_shown(pilot, lambda: drawing.now == 2.0)
         looking.now = 7.9
         seen = link.stamps
-        await until_shown(pilot, lambda: link.stamps > seen + 3)  # the screen has looked again
+        await until_shown(pilot, lambda: link.stamps > seen + 3)  # the screen has polled again
         assert begun == [0.0]
         looking.now = 8.1
         await until_shown(pilot, lambda: len(begun) == 2)

@@ -1,4 +1,4 @@
-"""The people screen: what works with each person in words and numbers, and corrections by staff."""
+"""The people screen: which strategies work with each person, and corrections by staff."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ GAMES = (
 
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Workspace]:
-    """A workspace in which four games were played, the last one two days ago."""
+    """A workspace with four games, the last one two days ago."""
     monkeypatch.setenv("TZ", "UTC")
     time.tzset()
     at = [NOW]
@@ -68,7 +68,7 @@ def put(store: Store, game: str, person: str, strategy: str, came: str) -> None:
 
 
 def complied(workspace: Workspace, person: str, strategy: str) -> tuple[int, int]:
-    """Return how often a person complied with a strategy, of how many times, by the log."""
+    """Return how often a person complied with a strategy, and the number of uses, by the log."""
     return workspace.store.responses().get((person, strategy), (0, 0))
 
 

@@ -30,7 +30,7 @@ def spoken() -> list[str]:
 
 @pytest.fixture
 def screen(workspace: Workspace, spoken: list[str]) -> PhrasesScreen:
-    """The screen, in a workspace with one name that the dictionary does not have."""
+    """The screen, in a workspace with one name that the dictionary lacks."""
     workspace.rename(workspace.people[0], "Rosa")
     workspace.rename(workspace.people[1], NEW_NAME)
 
@@ -41,14 +41,14 @@ def screen(workspace: Workspace, spoken: list[str]) -> PhrasesScreen:
 
 
 async def looked_up(pilot: TangyPilot) -> None:
-    """Wait until the words were looked up, which happens beside the screen."""
-    await pilot.pause()  # until what was typed has begun it
+    """Wait for the words' look-up, which runs in the background."""
+    await pilot.pause()  # until the typed text has started it
     await pilot.app.workers.wait_for_complete()
     await pilot.pause()
 
 
 async def find(pilot: TangyPilot, *keys: str) -> None:
-    """Search, and go to the first that is found."""
+    """Search, and go to the first hit."""
     await looked_up(pilot)
     pilot.type("slash")
     await pilot.pause()

@@ -33,19 +33,19 @@ from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
 @pytest.fixture
 def policy(learnt: Policy) -> Policy:
-    """The policy that was learnt there."""
+    """The policy that was learned there."""
     return learnt
 
 
 @pytest.fixture
 def untaught(tmp_path: Path) -> Iterator[Workspace]:
-    """A workspace in which nothing was shown yet."""
+    """A workspace without demonstrations."""
     opened = Workspace(tmp_path / "untaught")
     yield opened
     opened.close()
@@ -125,7 +125,7 @@ async def test_skipping_plays_the_game_to_its_end(
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
         assert screen.query_one(StatusLine).status.stage == "the game is over"
         assert workspace.store.last("game ended") is not None
-        assert screen.query_one(Posteriors).display  # what was learnt of the people
+        assert screen.query_one(Posteriors).display  # beliefs about the people
         await pilot.press("g", "y")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.game == 2

@@ -48,7 +48,7 @@ def gappy(workspace: Workspace, cover: Cover) -> Policy:
 
 
 def playing(workspace: Workspace, policy: Policy) -> Program:
-    """Make the program with the playing screen open; what it leads to is kept in `results`."""
+    """Make the program with the playing screen open; the screen's results go to `results`."""
 
     async def start(program: Program) -> None:
         supervision = workspace.supervision(policy, 5, asks=True)

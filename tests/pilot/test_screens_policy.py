@@ -17,7 +17,7 @@ from tests.support.waiting import until_shown
 
 @pytest.fixture
 def taught(workspace: Workspace) -> Workspace:
-    """A workspace with a demonstration, from which nothing was learnt yet."""
+    """A workspace with a demonstration, and no policy yet."""
     teaching = workspace.teaching(SCRIPTED, 1)
     teaching.begin()
     for _ in ScriptedTeacher(teaching).demonstrate():

@@ -1,4 +1,4 @@
-"""Keys that arrive in one piece, before a screen has opened or closed."""
+"""Keys that arrive at once, before a screen has opened or closed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ async def _silent(phones: str) -> None:
 
 @pytest.fixture
 def screen(workspace: Workspace) -> PhrasesScreen:
-    """A screen that can be closed by a key."""
+    """A screen that a key can close."""
     return PhrasesScreen(workspace, _silent)
 
 

@@ -36,7 +36,7 @@ PATIENCE = 20.0
 
 
 def picture(width: int, height: int, red: int = 0) -> Any:
-    """A picture that is blue above and bright below, with so much red."""
+    """A picture that is blue above and bright below, with this much red."""
     above, below = bytes((200, 20, red)) * width, bytes((250, 250, 250)) * width
     pixels = above * (height // 2) + below * (height - height // 2)
     return SimpleNamespace(width=width, height=height, pixels=pixels, seq=1)
@@ -109,7 +109,7 @@ def make(workspace: Workspace, sensors: FakeSensors) -> Callable[..., SensorsScr
 
 
 async def later(pilot: TangyPilot) -> None:
-    """Wait until the devices were looked at again."""
+    """Wait until the screen has polled the devices again."""
     screen = pilot.app.screen
     assert isinstance(screen, SensorsScreen)
     screen.look()
@@ -117,7 +117,7 @@ async def later(pilot: TangyPilot) -> None:
 
 
 def left(pilot: TangyPilot) -> list[str]:
-    """What stands on the left: the devices, and what is told of one."""
+    """The left side: the devices, and details of one."""
     return [line[:46] for line in pilot.lines()]
 
 
@@ -215,7 +215,7 @@ async def test_a_picture_is_fetched_only_while_it_is_shown(
         await pilot.pause()
         asked = len(sensors.asked)
         await pilot.pause(2 * LOOK)
-        assert len(sensors.asked) <= asked + 1  # help lies over it
+        assert len(sensors.asked) <= asked + 1  # help covers it
         pilot.type("escape")
         await pilot.pause()
         pilot.type("enter")
@@ -263,7 +263,7 @@ async def test_only_the_changed_part_of_a_picture_is_drawn(run: Run) -> None:
         shown.show(picture(30, 16))
         await pilot.pause()
         shown.refresh = lambda *regions, **_: drawn.append(regions)  # type: ignore[method-assign,assignment]
-        shown.show(picture(30, 16, red=9))  # as much as noise
+        shown.show(picture(30, 16, red=9))  # no more than noise
         assert drawn == []
         shown.show(picture(30, 16, red=90))
         ((*regions,),) = drawn

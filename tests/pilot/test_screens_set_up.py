@@ -320,14 +320,14 @@ async def test_an_activity_without_calls_has_no_settings_for_calls(
         ids = {line.id for line in pilot.app.screen.query_one(SetUpList).choices}
         assert "activity" in ids and ids.isdisjoint({"pace", "patterns", "several", "visits"})
         shown = pilot.text()
-        assert "played for" not in shown  # no key for patterns
+        assert "played for" not in shown  # the game has no key for patterns
         assert "Cards" not in shown and "Faces" in shown  # and no card to hold up
         assert "[▦]" not in shown
     workspace.close()
 
 
 class Panel(TangyScreen[None]):
-    """A screen with the panel of staff alone."""
+    """A screen with the staff panel alone."""
 
     def compose(self) -> ComposeResult:
         yield StaffPanel()

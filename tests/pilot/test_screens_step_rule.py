@@ -23,7 +23,7 @@ STAGE = "listen"
 
 
 def listening(workspace: Workspace) -> TeachingSession:
-    """Return a session whose last step was taken while an answer is waited for."""
+    """Return a session that waits for an answer about its last step."""
     session = workspace.teaching("Mary", 1)
     session.begin()
     teacher = ScriptedTeacher(session)

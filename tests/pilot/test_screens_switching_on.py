@@ -109,7 +109,7 @@ async def test_quitting_the_program_cancels_the_opening(
 async def test_esc_typed_ahead_prevents_the_opening(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    """A window that takes its time to come up is left before anything can be read in it."""
+    """A slow window is closed before its text is readable."""
     robot = Robot(workspace)
     app = program(workspace, policy, robot)
     async with run(app=app) as pilot:

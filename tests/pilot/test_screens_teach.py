@@ -48,7 +48,7 @@ async def say(pilot: Pilot[None], words: str, answer: str = "y") -> None:
 
 
 def steps(workspace: Workspace) -> list[str]:
-    """Return the behaviours that the log has of the last demonstration."""
+    """Return the behaviours of the last demonstration by the log."""
     return [
         s.behaviour for s in read_demonstrations(workspace.store, workspace.activity.name)[-1].steps
     ]
@@ -270,7 +270,7 @@ async def test_the_status_names_a_guided_session(run: Run, workspace: Workspace)
 @pytest.mark.slow
 async def test_why_shows_the_decision_learnt_so_far(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
-        await pilot.press("f4")  # nothing was shown, so there is nothing to tell
+        await pilot.press("f4")  # nothing was shown, so there is nothing to explain
         await ended(pilot, "why")
         assert isinstance(pilot.app.screen, TeachScreen)
         await mid_game(pilot, 4)
@@ -345,9 +345,9 @@ async def test_a_visit_without_a_request_is_refused_with_a_suggestion(
         await pilot.press(*"go to user", "enter")
         await pilot.pause()
         assert "go to user 1" in screen_text(pilot.app)
-        await pilot.press("end")  # what was typed is still there
+        await pilot.press("end")  # the typed text is still there
         await say(pilot, " 3")
-        await pilot.press("escape")  # nobody asked: that is remarked
+        await pilot.press("escape")  # there was no question: Tangy says so
         await pilot.pause()
         assert workspace.store.last("demonstration step") is not None
         assert "Tangy is with User 3" in str(pilot.app.screen.query_one("#now", Static).render())

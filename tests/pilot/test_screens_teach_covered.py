@@ -30,9 +30,9 @@ def program(
     scripted: float | None = None,
     covered: str = "",
 ) -> Program:
-    """Make the program with the teaching screen open; what it ends with is noted.
+    """Make the program with the teaching screen open; its result is recorded.
 
-    `covered` says when the help comes over it: at the start, or after the last step.
+    `covered` says when the help covers it: at the start, or after the last step.
     """
 
     async def start(started: Program) -> None:

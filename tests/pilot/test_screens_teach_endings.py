@@ -25,7 +25,7 @@ def program(workspace: Workspace) -> Program:
 
 
 async def type_words(pilot: Pilot[None], words: str) -> None:
-    """Type what has no question."""
+    """Type a command without a question."""
     await pilot.press(*["space" if letter == " " else letter for letter in words], "enter")
     await pilot.pause()
 
@@ -43,7 +43,7 @@ async def test_finishing_early_ends_the_game_with_a_message(run: Run, workspace:
         assert "The game ended early" in screen_text(pilot.app)
         assert "The game is over" in now(pilot)
         await type_words(pilot, "call number")
-        assert len(pilot.app.screen_stack) == 2  # the game takes no command any more
+        assert len(pilot.app.screen_stack) == 2  # the game accepts no more commands
     (entry,) = read_library(workspace.store, workspace.activity.name).entries.values()
     assert entry.demonstration.finished and len(entry.demonstration.steps) == 1
 

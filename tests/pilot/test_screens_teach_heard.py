@@ -43,25 +43,25 @@ def teaching(workspace: Workspace, ears: FakeEars) -> Program:
 
 
 def line_of(pilot: TangyPilot) -> str:
-    """Return what the microphone's line says."""
+    """Return the text of the microphone's line."""
     return pilot.app.screen_stack[-1].query_one(MicrophoneLine).text
 
 
 def bar_of(pilot: TangyPilot) -> CommandBar:
-    """Return the bar of the teaching screen."""
+    """Return the teaching screen's command bar."""
     return next(s for s in pilot.app.screen_stack if isinstance(s, TeachScreen)).query_one(
         CommandBar
     )
 
 
 def log_of(pilot: TangyPilot) -> str:
-    """Return the text of the log of the teaching screen."""
+    """Return the text of the teaching screen's log."""
     screen = next(s for s in pilot.app.screen_stack if isinstance(s, TeachScreen))
     return " ".join(screen.query_one(LogView).sentences)
 
 
 def steps(workspace: Workspace) -> list[str]:
-    """Return the behaviours that the log has of the last demonstration."""
+    """Return the behaviours of the last demonstration by the log."""
     shown = read_demonstrations(workspace.store, workspace.activity.name)
     return [s.behaviour for s in shown[-1].steps] if shown else []
 
@@ -80,7 +80,7 @@ async def test_t_starts_and_ends_talking(run: Run, workspace: Workspace) -> None
     ears = FakeEars()
     async with run(app=teaching(workspace, ears)) as pilot:
         assert "t talk" in line_of(pilot)
-        assert "t talk" in pilot.lines()[-1]  # the bar is at rest, and says so
+        assert "t talk" in pilot.lines()[-1]  # the bar is idle, and shows it
         await pilot.press("t")
         assert ears.state == "listening"
         assert "listening ..." in line_of(pilot)
@@ -135,7 +135,7 @@ async def test_uncertain_words_offer_choices_that_are_verified(
         await pilot.pause()
         assert isinstance(pilot.app.screen, ChoicesDialog)
         assert "Did you mean" in screen_text(pilot.app)
-        await pilot.press("y", "enter", "space")  # none of them says which
+        await pilot.press("y", "enter", "space")  # none of them chooses an answer
         assert isinstance(pilot.app.screen, ChoicesDialog)
         await pilot.press("1")
         await pilot.pause()
@@ -156,7 +156,7 @@ async def test_rejecting_all_choices_does_nothing(run: Run, workspace: Workspace
         await pilot.press(key)
         await pilot.pause()
         assert bar_of(pilot).text == ""
-        await pilot.press("t")  # is still a key
+        await pilot.press("t")  # it is still a key
         assert ears.state == "listening"
         assert steps(workspace) == []
 
@@ -249,7 +249,7 @@ async def test_a_yes_chooses_nothing_and_a_no_rejects_all_choices(
 
 
 def dialog_text(pilot: TangyPilot) -> str:
-    """Return what stands in the question, as one line."""
+    """Return the question's text, as one line."""
     box = pilot.app.screen.query_one(".box").region
     rows = pilot.lines()[box.y : box.bottom]
     return " ".join(" ".join(row[box.x : box.right] for row in rows).split())
@@ -277,7 +277,7 @@ async def test_notes_on_hearing_appear_inside_an_open_question(
         ears.hear(Reply(True))
         await pilot.pause()
         assert which in dialog_text(pilot)
-        ears.be("listening")  # which it always does: nobody has begun to speak
+        ears.be("listening")  # the usual state: nobody has begun to speak
         await pilot.pause()
         assert which in dialog_text(pilot)
         assert nothing in log_of(pilot)
@@ -315,7 +315,7 @@ async def test_a_choice_lists_its_spoken_answers(run: Run, workspace: Workspace)
         assert "Or say yes or no." in dialog_text(pilot)
         ears.hear(Reply(True))
         await pilot.pause()
-        assert isinstance(pilot.app.screen, QuestionDialog)  # it is still asked about
+        assert isinstance(pilot.app.screen, QuestionDialog)  # the question is still open
         assert steps(workspace) == []
 
 
@@ -379,12 +379,12 @@ async def test_a_remark_on_a_spoken_step_is_answered_by_voice(
         await pilot.pause()
         assert isinstance(pilot.app.screen, RemarkDialog)
         assert "Or say yes or no." in screen_text(pilot.app)
-        ears.hear(Reply(yes=False, alternative=2))  # there is one answer
+        ears.hear(Reply(yes=False, alternative=2))  # there is only one answer
         await pilot.pause()
         assert "Please say the number of an answer, or no." in screen_text(pilot.app)
         ears.hear(Reply(True))
         await pilot.pause()
-        await pilot.pause()  # the answer is applied once the dialog is gone
+        await pilot.pause()  # the answer counts once the dialog is closed
         assert isinstance(pilot.app.screen, TeachScreen)
         kept = own_phrases(workspace.store, workspace.activity.name, "ann")
         assert kept == {"let it all begin": "greeting"}

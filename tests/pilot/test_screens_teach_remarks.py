@@ -91,7 +91,7 @@ async def test_a_contradiction_is_answered_in_place(
 async def test_escape_defers_the_remark(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await contradict(pilot)
-        await pilot.press("x", "y", "enter")  # none of these answers
+        await pilot.press("x", "y", "enter")  # none of these is an answer
         assert isinstance(pilot.app.screen, RemarkDialog)
         await pilot.press("escape")
         await pilot.pause()
@@ -107,7 +107,7 @@ async def test_learn_defers_the_remark_and_learns(run: Run, workspace: Workspace
         await pilot.press("f5")
         await pilot.pause()
         await pilot.pause()
-        assert isinstance(pilot.app.screen, MessageDialog)  # no game has come to its end
+        assert isinstance(pilot.app.screen, MessageDialog)  # no game has ended
         assert not read_library(workspace.store, "bingo").resolutions
 
 

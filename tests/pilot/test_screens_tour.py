@@ -1,4 +1,4 @@
-"""The tour for a new teacher: shown once, in a game of its own, and skippable at any time."""
+"""The tour for a new teacher: shown once, in its own game, and skippable at any time."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ async def test_the_tour_is_shown_once(run: Run, workspace: Workspace) -> None:
 
 
 async def teach_one_step(workspace: Workspace, run: Run, *renames: str) -> list[str]:
-    """Teach a step, do something about the name, and return whose games there are then."""
+    """Teach a step, answer the question for the name, and return the stored games' teachers."""
     save_profile(workspace.store.folder, TeacherProfile("Ada"))
     async with run(app=program(workspace)) as pilot:
         await pilot.pause()
@@ -127,7 +127,7 @@ async def test_escape_cancels_a_command_before_it_skips_the_tour(
         await pilot.press(*"Ada", "enter")
         await shows(pilot, "Welcome, Ada.")
         await pilot.press("enter")
-        # Enter belongs to the command now, and no longer to the tour.
+        # Enter now belongs to the command, no longer to the tour.
         await until_shown(pilot, lambda: "go on" not in screen_text(pilot.app).splitlines()[-1])
         for begun in (("tab",), tuple("greet")):
             await pilot.press(*begun, "escape")

@@ -28,7 +28,7 @@ SILENT = "espeak-ng is not installed; until it is, what Tangy says is shown as t
 
 @pytest.fixture
 def voices(monkeypatch: pytest.MonkeyPatch) -> list[FakeVoice]:
-    """The voices that were made, the last one at the end."""
+    """The created voices, the newest last."""
     made: list[FakeVoice] = []
 
     def make_voice(
@@ -222,7 +222,7 @@ async def test_a_step_in_real_time_waits_for_the_speech(
         assert len(voices[0].prepared) > len(workspace.activity.deck.numbers)
         steps = screen.query_one(Transcript)
         await until_shown(pilot, lambda: steps.count == 1)
-        screen.nudge.set()  # the time of the step has passed
+        screen.nudge.set()  # the step's time is over
         for _ in range(5):
             await pilot.pause(0.01)
         assert steps.count == 1

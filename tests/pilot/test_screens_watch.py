@@ -1,4 +1,4 @@
-"""A second console shows the game that another program runs, and stops the robot."""
+"""A second console shows a game of another program, and stops the robot."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from tests.support.waiting import until, until_shown
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
 @pytest.fixture
 def control(workspace: Workspace, learnt: Policy) -> GameController:
-    """A game after five steps, at whose door others may look on."""
+    """A game after five steps that other consoles may watch."""
     control = scripted_controller(workspace.supervision(learnt, 5))
     control.begin()
     while control.supervision.steps < 5:

@@ -31,7 +31,7 @@ TINY = (60, 18)
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
@@ -136,7 +136,7 @@ async def test_the_explanation_matches_its_snapshot(
     run: Run, workspace: Workspace, size: tuple[int, int], looks: Callable[[App[None]], None]
 ) -> None:
     why = why_of(workspace, persuading(workspace))
-    async with run(size=size) as pilot:  # above an empty screen, so that it alone is compared
+    async with run(size=size) as pilot:  # above an empty screen, to compare the dialog alone
         await pilot.app.push_screen(WhyDialog(workspace, why, a_choice(workspace)))
         await pilot.pause()
         looks(pilot.app)

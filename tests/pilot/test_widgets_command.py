@@ -32,7 +32,7 @@ def begins(typed: str) -> tuple[str, ...]:
 
 
 class Bar(TangyScreen[None]):
-    """A command bar, and the commands that it gave."""
+    """A command bar that records its commands."""
 
     AUTO_FOCUS = "#command-input"
     BINDINGS = [("u", "undo", "Undo"), ("escape", "back", "Back")]  # noqa: RUF012 - as Textual has it
@@ -94,7 +94,7 @@ async def test_the_bar_reopens_after_a_timeout(run: Run) -> None:
         await pilot.pause()
         timer = bar_of(pilot).reopening
         assert timer is not None
-        bar_of(pilot).ready()  # what the timer calls
+        bar_of(pilot).ready()  # the timer's callback
         await pilot.press("g")
         assert bar_of(pilot).text == "g"
 

@@ -172,7 +172,7 @@ async def test_a_small_window_is_covered_until_it_grows(run: Run) -> None:
             "Tangy needs 60 x 18 characters; this window has 40 x 10. "
             "Make it larger: nothing is lost."
         )
-        await pilot.press("x")  # nobody acts on what they cannot see
+        await pilot.press("x")  # nobody can act on an invisible question
         assert screen.marks == 0
         await pilot.press("ctrl+x")
         await pilot.pause()
@@ -330,7 +330,7 @@ async def test_m_switches_the_mouse_off_and_on(run: Run) -> None:
 
 
 def test_the_driver_still_has_the_methods_for_the_mouse() -> None:
-    """Textual keeps this private: it tells us when a release changes it."""
+    """Textual keeps these private: the test fails if a release changes them."""
     from textual.drivers.linux_driver import LinuxDriver
 
     assert callable(LinuxDriver._enable_mouse_support)

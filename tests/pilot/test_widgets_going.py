@@ -15,7 +15,7 @@ from tests.pilot.conftest import Run
 
 
 class Busy(TangyScreen[None]):
-    """Writes on its last panel at every turn of the loop."""
+    """Writes to its last panel at every turn of the loop."""
 
     written = 0
 

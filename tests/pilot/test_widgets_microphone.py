@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Line(TangyScreen[None]):
-    """Only the line."""
+    """A screen with the line alone."""
 
     def __init__(self, ears: SampleEars, expects: str = "") -> None:
         super().__init__()

@@ -82,7 +82,7 @@ def test_ascii_has_a_stand_in_for_every_shape() -> None:
 
 
 def test_the_filter_is_in_the_apps_private_list_of_filters() -> None:
-    """`App._filters` is private: this tells us when a Textual release changes it."""
+    """`App._filters` is private: the test fails if a Textual release changes it."""
     app = TangyApp()
     assert isinstance(app._filters[-1], CleanOutput)
     assert app._filters[-1] in app.get_line_filters()
@@ -91,7 +91,7 @@ def test_the_filter_is_in_the_apps_private_list_of_filters() -> None:
 
 
 class Unclean(TangyScreen[None]):
-    """A screen whose widget does not clean what it shows."""
+    """A screen whose widget does not clean its output."""
 
     def compose(self) -> ComposeResult:
         yield Label("ab\x1b[31m\u202ec", markup=False)
@@ -103,7 +103,7 @@ async def test_the_filter_cleans_the_output_of_every_widget(run: Run) -> None:
 
 
 class AllNasty(TangyScreen[None]):
-    """Every widget with one nasty text in each place that takes data."""
+    """Every widget with one nasty text in each place that shows data."""
 
     def __init__(self, sample: Sample, text: str) -> None:
         super().__init__()

@@ -56,7 +56,7 @@ class One(TangyScreen[None]):
 
 
 def painted_by(widget: Widget) -> list[Region]:
-    """Note what a widget asks to be painted from now on."""
+    """Record a widget's requests for painting from now on."""
     noted: list[Region] = []
     refresh = widget.refresh
 
@@ -116,7 +116,7 @@ async def test_steps_can_be_browsed_by_keys(run: Run) -> None:
     screen = One(steps)
     async with run(screen, (80, 18)) as pilot:
         steps.focus()
-        await pilot.press("up", "enter")  # nothing there: nothing happens
+        await pilot.press("up", "enter")  # without lines, keys do nothing
         for n in range(1, 41):
             steps.append(f"step {n}")
         await pilot.press("up")
@@ -130,10 +130,10 @@ async def test_steps_can_be_browsed_by_keys(run: Run) -> None:
         assert pilot.lines()[0] == " 1 step 1"
         steps.append("step 41")
         await pilot.pause()
-        assert pilot.lines()[0] == " 1 step 1"  # who looks back is not carried off
+        assert pilot.lines()[0] == " 1 step 1"  # the view stays where a person has scrolled
         await pilot.press("end", "down")
         await pilot.pause()
-        assert steps.chosen is None  # past the end the newest is followed again
+        assert steps.chosen is None  # at the end it follows the newest again
         assert pilot.lines()[-1].startswith("41 step 41")
 
 

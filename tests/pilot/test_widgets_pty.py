@@ -19,11 +19,11 @@ import pyte
 import pytest
 
 PATIENCE = 20.0  # s
-SILENCE = 0.5  # s without output that count as idle, and more than a question's first moment
+SILENCE = 0.5  # s without output that count as idle, and longer than the guard time of a question
 
 
 class Window:
-    """The gallery in a terminal of its own, read by a terminal in memory."""
+    """The gallery in its own terminal, read by a terminal in memory."""
 
     def __init__(self, columns: int, lines: int, *options: str) -> None:
         self.terminal, child = pty.openpty()
@@ -51,7 +51,7 @@ class Window:
         self.child = child
 
     def text(self) -> str:
-        """Return what stands in the window."""
+        """Return the window's text."""
         return "\n".join(self.screen.display)
 
     def read(self, seconds: float) -> bytes:
@@ -67,14 +67,14 @@ class Window:
         return piece
 
     def until(self, word: str) -> None:
-        """Wait until a word stands in the window."""
+        """Wait until a word is in the window."""
         begun = monotonic()
         while word not in self.text():
             assert monotonic() - begun < PATIENCE, f"no {word!r} in:\n{self.text()}"
             self.read(0.2)
 
     def settle(self) -> None:
-        """Wait until nothing is written any more."""
+        """Wait until output stops."""
         begun = monotonic()
         while self.read(SILENCE):
             assert monotonic() - begun < PATIENCE, "it never falls silent"
@@ -84,12 +84,12 @@ class Window:
         os.write(self.terminal, keys.encode())
 
     def resize(self, columns: int, lines: int) -> None:
-        """Give the window another size."""
+        """Resize the window."""
         fcntl.ioctl(self.terminal, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
         self.screen.resize(lines, columns)
 
     def status(self) -> int:
-        """Wait for the end of the program."""
+        """Wait for the end of the program; return its exit status."""
         begun = monotonic()
         while self.process.poll() is None:
             assert monotonic() - begun < PATIENCE, "it does not end"

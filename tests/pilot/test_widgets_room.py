@@ -1,4 +1,4 @@
-"""The room: places, requests and actions of people; and the painting of a walk."""
+"""The room: places, requests and actions of people; and the painting of moves."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class RoomScreen(TangyScreen[None]):
         self.arrived.append(event.place)
 
     def watch_painting(self) -> None:
-        """Note what the room asks to be painted from now on."""
+        """Record the room's requests for painting from now on."""
         refresh = self.room.refresh
 
         def noted(*regions: Region, **options: Any) -> Any:

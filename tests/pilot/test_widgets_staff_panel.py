@@ -1,4 +1,4 @@
-"""The panel for staff: everybody can be read, however many there are."""
+"""The staff panel: everybody is readable, however many there are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.pilot.conftest import Run
 
 
 class Panel(TangyScreen[None]):
-    """A screen with the panel of staff alone, ten lines high."""
+    """A screen with the staff panel alone, ten lines high."""
 
     CSS = "StaffPanel { height: 10; }"
 

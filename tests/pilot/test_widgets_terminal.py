@@ -77,7 +77,7 @@ def test_the_sentence_for_a_small_window() -> None:
 
 
 def loaded(module: str) -> set[str]:
-    """Return the top-level modules that importing a module brings along."""
+    """Return the top-level modules that a module's import loads."""
     code = f"import sys, {module}; print(*{{m.split('.')[0] for m in sys.modules}})"
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, check=True)  # noqa: S603 - our own
