@@ -1,4 +1,4 @@
-"""A bench of a test's own, and the setup of a robot process that drives on it."""
+"""A bench for one test, and the setup of a robot process that drives on it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ FRONT = (5.0, 1.2, 1.5708)
 
 
 def setup_on(bench: DeviceSimulator, *, stepped: bool = False, eyes: bool = False) -> RobotSetup:
-    """Name the wires of a bench; without eyes no camera is opened, which saves two processes."""
+    """Name the devices of a bench; without eyes no camera opens, which saves two processes."""
     at = bench.wires.rosbridge
     drivers = {name: {"kind": "rosbridge", "at": at} for name in ("base", "stop_button", "voice")}
     return RobotSetup(

@@ -1,4 +1,4 @@
-"""A broker of MQTT 3.1.1 on the loopback, as small as can be: it passes on what it is told to."""
+"""A minimal broker of MQTT 3.1.1 on the loopback: it publishes what a test says."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import suppress
 
 
 class Broker:
-    """Takes connections and subscriptions, and publishes to all of them what a test says."""
+    """Takes connections and subscriptions, and publishes a test's messages to all of them."""
 
     def __init__(self) -> None:
         self.port = 0
@@ -30,12 +30,12 @@ class Broker:
         return f"mqtt://127.0.0.1:{self.port}/tangy/requests"
 
     async def listen(self) -> None:
-        """Answer, at the same port as before."""
+        """Listen at the same port as before."""
         self._server = await asyncio.start_server(self._serve, "127.0.0.1", self.port)
         self.port = self._server.sockets[0].getsockname()[1]
 
     async def unplug(self) -> None:
-        """Break all connections off, and answer nobody until `listen`."""
+        """Break off all connections, and refuse new ones until `listen`."""
         if self._server is not None:
             self._server.close()
         for writer in list(self._writers):
@@ -43,11 +43,11 @@ class Broker:
         self._arrived.clear()
 
     async def listened_to(self) -> None:
-        """Wait until somebody has subscribed."""
+        """Wait until a client has subscribed."""
         await self._arrived.wait()
 
     def publish(self, topic: str, payload: bytes, *, retain: bool = False) -> None:
-        """Tell all that have subscribed."""
+        """Publish to all subscribers."""
         name = topic.encode()
         body = struct.pack(">H", len(name)) + name + payload
         for writer in self._writers:

@@ -1,4 +1,4 @@
-"""Chromium without a window, driven over its own debugging protocol."""
+"""Headless Chromium, driven over its own debugging protocol."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 PATIENCE = 30.0
 
-# Without these it asks for hosts of its maker, which a machine without a network refuses.
+# Without these it looks up its maker's hosts, which a machine without a network refuses.
 QUIETLY = (
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -31,11 +31,11 @@ class Tab:
 
     def __init__(self, socket: ClientConnection) -> None:
         self._socket = socket
-        self._session: dict[str, str] = {}  # none: the browser itself is spoken to
+        self._session: dict[str, str] = {}  # none: commands go to the browser itself
         self._asked = 0
 
     async def ask(self, method: str, **given: Any) -> dict[str, Any]:
-        """Tell the browser to do something, and return what it answers."""
+        """Send the browser a command, and return its response."""
         self._asked += 1
         await self._socket.send(
             json.dumps({"id": self._asked, "method": method, "params": given, **self._session})
@@ -58,12 +58,12 @@ class Tab:
         self._session = {"sessionId": attached["sessionId"]}
 
     async def close(self) -> None:
-        """Close the page, and the conversation about it."""
+        """Close the page and its connection."""
         await self.ask("Page.close")
         await self._socket.close()
 
     async def open(self, url: str, width: int, height: int) -> None:
-        """Open an address in a window of a size."""
+        """Open an address in a window of this size."""
         await self.ask(
             "Emulation.setDeviceMetricsOverride", width=width, height=height,
             deviceScaleFactor=1, mobile=False,
@@ -71,7 +71,7 @@ class Tab:
         await self.ask("Page.navigate", url=url)
 
     async def value(self, script: str) -> Any:
-        """Return what an expression is worth on the page."""
+        """Return the value of an expression on the page."""
         said = await self.ask("Runtime.evaluate", expression=script, returnByValue=True)
         if "exceptionDetails" in said:
             raise RuntimeError(str(said["exceptionDetails"]))
@@ -79,7 +79,7 @@ class Tab:
 
     async def until(self, script: str) -> None:
         """Wait until an expression is true on the page."""
-        # While a page is loading there may be nothing to ask about.
+        # While a page is loading, the objects of the expression may not exist.
         safely = f"(() => {{ try {{ return Boolean({script}); }} catch (e) {{}} }})()"
         for _ in range(round(20 * PATIENCE)):
             if await self.value(safely):
@@ -88,13 +88,13 @@ class Tab:
         raise AssertionError(f"never so on the page: {script}")
 
     async def screenshot(self, path: Path) -> None:
-        """Keep what can be seen as a PNG."""
+        """Save a screenshot as a PNG."""
         said = await self.ask("Page.captureScreenshot", format="png")
         await asyncio.to_thread(path.write_bytes, base64.b64decode(said["data"]))
 
 
 class Browser:
-    """A running browser, by its address; each tab has a conversation of its own with it."""
+    """A running browser, by its address; each tab has its own connection to it."""
 
     def __init__(self, address: str) -> None:
         self._address = address
@@ -109,14 +109,14 @@ class Browser:
         return tab
 
     async def close(self) -> None:
-        """Close what was opened."""
+        """Close the open tabs."""
         for tab in self._tabs:
             await tab.close()
 
 
 @contextmanager
 def chromium(folder: Path) -> Iterator[str]:
-    """Run a browser with an empty profile; gives the address of its debugging protocol."""
+    """Run a browser with an empty profile; yields the address of its debugging protocol."""
     assert CHROMIUM is not None
     said = folder / "DevToolsActivePort"
     process = subprocess.Popen(  # noqa: S603 - found on the path

@@ -1,4 +1,4 @@
-"""An MJPEG camera on the loopback, that does all that cameras do: also freeze, hang and lie."""
+"""An MJPEG camera on the loopback that also shows every fault of a camera."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PART = b"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n"
 
 
 def _pictures(seed: int, light: float = 1.0, blur: float = 0.0, lamp: bool = False) -> list[bytes]:
-    """Return a second of pictures that differ by nothing but noise."""
+    """Return a second of pictures that differ only by noise."""
     rng = np.random.default_rng(seed)
     still = room(seed, *SIZE)
     if lamp:
@@ -35,9 +35,9 @@ def _pictures(seed: int, light: float = 1.0, blur: float = 0.0, lamp: bool = Fal
 
 
 class CameraServer:
-    """Sends pictures to whoever asks; `mode` says what kind, and may change at any time.
+    """Sends pictures to every client; `mode` says which, and may change at any time.
 
-    live, frozen, covered, dark, blurred; hang (says nothing any more), half (stops in mid-picture),
+    live, frozen, covered, dark, blurred; hang (sends nothing more), half (stops in mid-picture),
     rubbish, close (ends each connection), refuse (nobody answers).
     """
 
@@ -63,13 +63,13 @@ class CameraServer:
         return f"http://127.0.0.1:{self.port}/camera.mjpg"
 
     def listen(self) -> None:
-        """Answer, at the same port as before."""
+        """Listen at the same port as before."""
         self._socket = socket.create_server(("127.0.0.1", self.port), reuse_port=False)
         self.port = self._socket.getsockname()[1]
         self._start(self._accept, self._socket)
 
     def unplug(self) -> None:
-        """Break all connections off, and answer nobody until `listen`."""
+        """Break off all connections, and refuse new ones until `listen`."""
         self.mode = "close"
         if self._socket is not None:
             with suppress(OSError):
@@ -112,7 +112,7 @@ class CameraServer:
                 if mode == "hang":
                     continue
                 if mode == "close":
-                    # A cable that is pulled out: no polite end of the stream.
+                    # As from a pulled cable: the stream has no proper end.
                     connection.setsockopt(
                         socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0)
                     )

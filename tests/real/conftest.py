@@ -1,4 +1,4 @@
-"""Terminals, a taught folder and a bench for tests of the real parts."""
+"""Terminals, a taught folder and a bench for tests with real processes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def tangy() -> str:
 
 @pytest.fixture
 def open_terminal(tmp_path: Path) -> Iterator[OpenTerminal]:
-    """Open terminals that run `tangy` with these words, in a data folder of the test's own."""
+    """Open terminals that run `tangy` with these words, in the test's own data folder."""
     opened: list[Terminal] = []
 
     def open_one(
@@ -37,7 +37,7 @@ def open_terminal(tmp_path: Path) -> Iterator[OpenTerminal]:
         data: bool = True,
     ) -> Terminal:
         folder = ["--data", str(tmp_path / "data")] if data else []
-        if data:  # who teaches was asked before
+        if data:  # the teacher's name is known already
             (tmp_path / "data").mkdir(exist_ok=True)
             save_profile(tmp_path / "data", TeacherProfile("Ada"))
         terminal = Terminal(
@@ -53,7 +53,7 @@ def open_terminal(tmp_path: Path) -> Iterator[OpenTerminal]:
 
 @pytest.fixture
 def open_tmux(tmp_path: Path) -> Iterator[Callable[[int, int], Tmux]]:
-    """Open a tmux window of a size."""
+    """Open a tmux window of this size."""
     if shutil.which("tmux") is None:
         pytest.skip("tmux is not installed")
     opened: list[Tmux] = []
@@ -70,7 +70,7 @@ def open_tmux(tmp_path: Path) -> Iterator[Callable[[int, int], Tmux]]:
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder in which one guided game was shown and learnt from, as it was then."""
+    """A data folder with one guided game, and the policy learned from it."""
     folder = tmp_path_factory.mktemp("taught")
     teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
     for command in (teach, ["learn"]):
@@ -82,7 +82,7 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(taught: Path, tmp_path: Path) -> Path:
-    """A copy of the taught folder of the test's own: no game of another test goes on in it."""
+    """A copy of the taught folder for one test, so that no game of another test continues in it."""
     return Path(shutil.copytree(taught, tmp_path / "taught"))
 
 
@@ -101,7 +101,7 @@ def bench() -> Iterator[DeviceSimulator]:
 
 @pytest.fixture
 def robot_beside() -> Iterator[DeviceSimulator]:
-    """A robot that runs beside the program and not under it; people of a game are there."""
+    """A robot that runs beside the program, not under it, with the people of a game."""
     people = {f"user{number}": f"User {number}" for number in range(1, 5)}
     robot = DeviceSimulator(seed=3, people=people, stepped=False, activity="bingo", robot="tangy")
     robot.do("begin")

@@ -1,4 +1,4 @@
-"""A program that drives a robot up and down, to be ended in every way that a program can end.
+"""A program that drives a robot up and down, so that tests can end it in every way.
 
 Its one argument is the setup of the robot process, as JSON.
 """
@@ -15,7 +15,7 @@ LEFT, RIGHT = [2.0, 3.0, 1.57], [8.0, 3.0, 1.57]
 
 
 def main() -> None:
-    """Drive until somebody ends it."""
+    """Drive until the program is ended."""
     link = RobotLink(RobotSetup.from_json(sys.argv[1]))
     link.start()
     print("on", flush=True)

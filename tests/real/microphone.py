@@ -1,4 +1,4 @@
-"""A microphone of somebody who speaks into a laptop, in a process of its own."""
+"""A laptop's microphone with a speaker, in another process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PIECE = 0.05  # s
 
 
 class Laptop:
-    """`tangy mic` in a process of its own, into which somebody speaks at the speed of speech."""
+    """`tangy mic` in another process, with sound at the speed of speech."""
 
     def __init__(self, tangy: str, data: Path) -> None:
         self.process = subprocess.Popen(  # noqa: S603 - our own program
@@ -28,7 +28,7 @@ class Laptop:
         )
 
     def say(self, terminal: Terminal, pcm: bytes) -> float:
-        """Speak at the speed of speech, looking at the terminal; return when the sound began."""
+        """Send sound at the speed of speech, reading the terminal; return when the sound began."""
         assert self.process.stdin is not None
         size = round(2 * RATE * PIECE)
         began = monotonic()
@@ -37,7 +37,7 @@ class Laptop:
             over = began + (place + len(piece)) / 2 / RATE
             while (left := over - monotonic()) > 0:
                 terminal.read(left)
-            self.process.stdin.write(piece)  # as a microphone gives it: when it has been said
+            self.process.stdin.write(piece)  # as from a microphone: after it was said
             self.process.stdin.flush()
         return began
 

@@ -1,4 +1,4 @@
-"""MRPT's pf-localization on the scans that Tangy is measured by: files for it, and what it says."""
+"""MRPT's pf-localization on the same scans as Tangy: its input files, and its results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tangy_hw.navigation.occupancy import OccupancyMap
 from tests.bench.localisation import Moment
 
 PROGRAMS = ("pf-localization", "carmen2rawlog", "ros-map-yaml2mrpt")
-MISSED = 81.91  # metres: what a SICK scanner writes of a beam that met nothing
+MISSED = 81.91  # metres: a SICK scanner's value for a beam without a return
 PATIENCE = 400  # seconds
 
 SETTINGS = """
@@ -79,7 +79,7 @@ LF_alternateAverageMethod = 0
 def mrpt_errors(
     map_: OccupancyMap, way: Sequence[Moment], folder: Path, sigma: float = 0.35
 ) -> list[float]:
-    """Let MRPT follow a way from its beginning; return by how many metres it is off, scan by scan.
+    """Let MRPT follow a drive from its beginning; return its errors in metres, scan by scan.
 
     It has as many particles and beams as Tangy: 300 to 2000, and 60.
     """
@@ -105,7 +105,7 @@ def mrpt_errors(
 def _lines(way: Sequence[Moment]) -> list[str]:
     lines = []
     for number, one in enumerate(way):
-        # one reading more, of nothing: as many as reach from -90 to +90 degrees in half degrees
+        # one empty reading more: then they reach from -90 to +90 degrees in half degrees
         ranges = [*np.where(np.isfinite(one.scan.ranges), one.scan.ranges, MISSED), MISSED]
         pose = " ".join(f"{value:.6f}" for value in one.odometry)
         stamp = f"{1000 + number * 0.4:.6f}"

@@ -28,7 +28,7 @@ def robot_file(robot: DeviceSimulator, folder: Path, contacts: str = "") -> Path
 
 
 def program(robot: DeviceSimulator, folder: Path, contacts: str = "") -> Terminal:
-    """Open a terminal in which the program plays with the robot."""
+    """Open a terminal with the program playing with the robot."""
     corners = ",".join(f"{x:g},{y:g}" for x, y in robot.wires.corners)
     file = robot_file(robot, folder, contacts)
     command = [
@@ -40,7 +40,7 @@ def program(robot: DeviceSimulator, folder: Path, contacts: str = "") -> Termina
 
 
 def begin(terminal: Terminal) -> None:
-    """Let the game begin: faults of the start are over when they are asked about."""
+    """Begin the game; confirm that faults are over if the program asks."""
     if "Is all well now?" in terminal.until(
         lambda text: "greet everyone" in text or "well" in text
     ):

@@ -1,8 +1,8 @@
 """A rosbridge for tests: between a ROS 1 master and WebSocket clients, by Debian's rospy.
 
 `/usr/bin/python3 ros_bridge.py PORT` with ROS_MASTER_URI set; it prints its port when it listens.
-It knows topics and services, no more than the drivers need; messages are written as rosbridge
-does: bytes in base64, what is not finite as null, times as secs and nsecs.
+It knows topics and services, as far as the drivers need them; messages are written as by
+rosbridge: bytes in base64, infinite values and NaN as null, times as secs and nsecs.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def as_json(value: Any) -> Any:
 
 
 def filled(message: Any, values: Any) -> Any:
-    """Fill a message in; a field that it has not is an error, as it is to rosbridge."""
+    """Fill a message in; an unknown field is an error, as in rosbridge."""
     kinds = dict(zip(message.__slots__, message._slot_types, strict=True))
     for name, value in values.items():
         setattr(message, name, made(kinds[name], value))
@@ -60,7 +60,7 @@ def made(kind: str, value: Any) -> Any:
 
 
 def publisher(topic: str, kind: str = "") -> tuple[Any, Any]:
-    """Return who publishes a topic here, and the class of its messages."""
+    """Return the publisher of a topic, and its message class."""
     with LOCK:
         if topic not in PUBLISHERS:
             kind = kind or rostopic.get_topic_type(topic)[0]
@@ -70,7 +70,7 @@ def publisher(topic: str, kind: str = "") -> tuple[Any, Any]:
 
 
 def attend(connection: ServerConnection) -> None:
-    """Serve one client until it is gone."""
+    """Serve one client until it disconnects."""
     subscribers: dict[str, Any] = {}
 
     def send(message: dict[str, Any]) -> None:
@@ -118,7 +118,7 @@ def attend(connection: ServerConnection) -> None:
 
 
 def main() -> None:
-    """Listen until it is killed."""
+    """Listen until the process is killed."""
     rospy.init_node("bridge", anonymous=True, disable_signals=True)
     with serve(attend, "127.0.0.1", int(sys.argv[1]), compression=None) as server:
         print(server.socket.getsockname()[1], flush=True)

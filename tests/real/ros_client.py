@@ -1,6 +1,6 @@
 """A client for tests of a rosbridge server: PyPI's roslibpy, as others would write it.
 
-`python ros_client.py PORT` prints as JSON what it heard, was answered, and what its goal brought.
+`python ros_client.py PORT` prints as JSON its received messages, replies, and its goal's result.
 """
 
 from __future__ import annotations

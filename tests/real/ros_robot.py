@@ -1,7 +1,7 @@
 """A robot for tests: a ROS 1 node by Debian's rospy, with a move_base of Debian's actionlib.
 
-It drives as /cmd_vel says, for half a second; its /move_base drives straight to a goal, and finds
-no way to where x is beyond 50 m. It says what real ones do, at their rates.
+It follows /cmd_vel for half a second; its /move_base drives straight to a goal, and finds
+no path to goals with x beyond 50 m. It publishes at the rates of real robots.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ SPEED = 2.0
 
 
 class Robot:
-    """All of it, in one node."""
+    """The whole robot, in one node."""
 
     def __init__(self) -> None:
         self.x = self.y = self.heading = 0.0

@@ -101,5 +101,5 @@ def test_the_yes_key_of_a_local_terminal_is_y(start: Start) -> None:
 def test_no_blind_yes_is_accepted(start: Start, link: Link) -> None:
     far = start(link, **SSH)
     assert blind(far, "y", 12, 2 * link.delay + link.jitter + 0.05) == 0
-    # The terminal is asked behind the question, and jitter may hold up what asks it.
+    # The terminal gets the query after the question, and jitter may delay the query.
     assert answered(far, 12, 0.3 + link.jitter) >= 11

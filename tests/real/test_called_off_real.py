@@ -15,7 +15,7 @@ import pytest
 from tests.support.processes import Family
 from tests.support.terminal import TANGY, Terminal
 
-ENDS = 2.0  # s in which all is over, on a machine that has a processor to spare
+ENDS = 2.0  # s until everything has ended, on an idle machine
 PATIENCE = 60.0
 PROFILE = Path(__file__).parents[2] / "profiles/tangy_profiles/robots/tangy.toml"
 
@@ -53,7 +53,7 @@ def nothing(there: dict[int, str]) -> bool:
 
 
 def assert_all_over(family: Family, started: set[int], meanwhile: Callable[[], object]) -> None:
-    """Wait until nothing runs; nothing may have been started meanwhile, but by who was on it."""
+    """Wait until nothing runs; no bench or robot process may have started meanwhile."""
     took = family.seconds_until(nothing, PATIENCE, meanwhile)
     late = {pid: family.seen[pid] for pid in family.seen.keys() - started}
     assert not [command for command in late.values() if BENCH in command or ROBOT in command]
@@ -106,7 +106,7 @@ def test_a_cancelled_opening_without_a_screen_leaves_no_process(
 
 @pytest.fixture
 def deaf() -> Iterator[int]:
-    """A port that takes connections and never says a word."""
+    """A port that accepts connections and never sends anything."""
     with socket.create_server(("127.0.0.1", 0), backlog=64) as server:
         yield int(server.getsockname()[1])
 

@@ -1,4 +1,4 @@
-"""Calls on a terminal: one that fails, is answered late, at once, and on the chest screen."""
+"""Calls on a terminal: a failed one, and late, immediate and chest screen's answers."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ command = [{command}]
 
 
 def halted(terminal: Terminal, robot_beside: DeviceSimulator) -> None:
-    """Press the button for emergencies, and wait until the dialog takes keys."""
+    """Press the emergency stop, and wait until the dialog takes keys."""
     robot_beside.do("inject", kind="emergency-stop")
     terminal.until("Tangy stands still")
     terminal.settle()
 
 
 def cleared(terminal: Terminal, robot_beside: DeviceSimulator) -> None:
-    """Pull the button out, and clear the fault."""
+    """Release the emergency stop, and clear the fault."""
     robot_beside.do("lift", kind="emergency-stop")
     terminal.until("It is gone now")
     terminal.type("r")

@@ -42,7 +42,7 @@ def film(path: Path, code: str, rate: float = 10.0) -> Path:
 
 
 def differs(image: np.ndarray[tuple[int, ...], np.dtype[np.uint8]], number: int) -> float:
-    """Return by how much a picture differs from the one that it should be, of 255."""
+    """Return how much a picture differs from the expected one, of 255."""
     return float(np.mean(cv2.absdiff(image, PICTURES[number])))
 
 
@@ -210,7 +210,7 @@ class TestProcess:
         assert rest.decode().splitlines()[-1].startswith("The pictures are in ")
         names = [path.name for path in sorted((tmp_path / "set").iterdir())]
         assert names[:2] == ["000001.json", "000001.png"]
-        assert len(names) % 2 == 0  # none without what is known of it
+        assert len(names) % 2 == 0  # every picture has its metadata
 
     @pytest.mark.slow
     async def test_a_killed_camera_process_is_restarted(self, server: CameraServer) -> None:
@@ -245,7 +245,7 @@ class TestProcess:
     ) -> None:
         monkeypatch.setattr("tangy_hw.drivers.camera.OPEN_SECONDS", 0.5)
         path = tmp_path / "pipe.avi"
-        os.mkfifo(path)  # whoever opens it waits for ever
+        os.mkfifo(path)  # opening it blocks for ever
         source = CameraSource("pipe", "file", str(path), each=True)
         async with Camera(source) as camera:
             asked = asyncio.create_task(camera.frame())

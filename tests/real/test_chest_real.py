@@ -34,7 +34,7 @@ is 28 minutes of arc at four metres; five are what a good eye needs."""
 
 @pytest.fixture(autouse=True)
 def patience(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a browser be slow that shares its processor with other tests."""
+    """Give the browser more time, because it shares its processor with other tests."""
     monkeypatch.setattr(chest, "SHOW_SECONDS", PATIENCE)
 
 
@@ -60,7 +60,7 @@ async def browser(address: str) -> AsyncIterator[Browser]:
 
 
 async def opened(browser: Browser, screen: WebChestScreen, size: tuple[int, int]) -> Tab:
-    """Open the page, pair the tablet if it is not, and wait until it has answered."""
+    """Open the page, pair the tablet if necessary, and wait until it has answered."""
     tab, pages = await browser.tab(), screen.pages
     await tab.open(screen.url, *size)
     while screen.pages == pages:
@@ -84,12 +84,12 @@ async def enter(tab: Tab, code: str) -> None:
 
 
 async def read(tab: Tab, element: str) -> str:
-    """Return what stands in an element and can be seen."""
+    """Return the visible text of an element."""
     return str(await tab.value(f"document.getElementById('{element}').innerText")).strip()
 
 
 async def outside(tab: Tab) -> str:
-    """Name what is shown beyond the window, or the box it is in; "" if all is within."""
+    """Name an element beyond the window, or beyond its box; "" if all are within."""
     return str(
         await tab.value(
             """(function () {
@@ -123,7 +123,7 @@ async def test_a_called_number_is_large_and_black_on_white(
         chips = "Array.from(document.querySelectorAll('#before span'), c => c.textContent)"
         assert await tab.value(chips) == [one.replace("-", "") for one in CALL.before]
         assert await outside(tab) == ""
-        # Digits as they were drawn: the rows of the right half that have ink in them.
+        # Digits as drawn: the rows of the right half that have ink in them.
         picture = tmp_path / f"{size[0]}.png"
         await tab.screenshot(picture)
         seen = cv2.imread(str(picture), cv2.IMREAD_GRAYSCALE)
@@ -242,7 +242,7 @@ async def test_the_page_reports_a_lost_link_and_reconnects(browser: Browser) -> 
     await screen.close()
     await tab.until("document.getElementById('lost').offsetHeight > 40")
     assert (await read(tab, "lost")).startswith("No link to the robot")
-    assert await read(tab, "number") == "12"  # what was called stays, pale
+    assert await read(tab, "number") == "12"  # the called number stays, pale
     again = WebChestScreen(port=port, pairing=screen.pairing)
     await again.start()
     await until(lambda: again.pages == 1, PATIENCE)
@@ -281,7 +281,7 @@ async def test_a_tablet_stays_paired(browser: Browser, tmp_path: Path) -> None:
     await tab.until("document.getElementById('number').innerText === '12'")
     assert not await tab.value(UNPAIRED)
     assert not await tab.value("document.cookie")  # no script of the page can read the token
-    # The robot process ends, and another one begins: nobody has to enter anything.
+    # The robot process ends, and another one begins: nobody has to enter a code again.
     port = screen.port
     await screen.close()
     await tab.until("document.getElementById('lost').offsetHeight > 40")
@@ -308,7 +308,7 @@ async def test_an_unknown_tablet_asks_for_the_code(browser: Browser) -> None:
     await tab.until(UNPAIRED)
     assert other.reading().state == "WARN"
     hidden = "document.getElementById('number').offsetHeight === 0"
-    assert await tab.value(hidden)  # what was called before is not to be seen
+    assert await tab.value(hidden)  # earlier calls are hidden
     await enter(tab, other.code)
     await until(lambda: other.reading().state == "OK", PATIENCE)
     await tab.until("document.body.className.indexOf('unpaired') < 0")
@@ -329,7 +329,7 @@ async def test_the_question_for_the_code_fits_on_the_screen(
         box = f"document.getElementById('{element}').getBoundingClientRect()"
         assert await tab.value(f"{box}.bottom <= innerHeight && {box}.right <= innerWidth")
     high = "document.getElementById('code').getBoundingClientRect().height"
-    assert await tab.value(high) >= 44  # a finger finds it
+    assert await tab.value(high) >= 44  # large enough for a finger
 
 
 async def test_a_press_on_a_call_button_is_acknowledged(
@@ -342,7 +342,7 @@ async def test_a_press_on_a_call_button_is_acknowledged(
     words = await tab.value("document.querySelector('#calls button').textContent")
     assert words == "Station 2: I am coming"
     high = await tab.value("document.querySelector('#calls button').offsetHeight")
-    assert high >= 44  # CSS pixels: as large as a finger
+    assert high >= 44  # CSS pixels: large enough for a finger
     inside = "document.getElementById('calls').getBoundingClientRect().bottom <= innerHeight + 1"
     assert await tab.value(inside)
     assert not await tab.value("document.body.scrollHeight > innerHeight + 1")

@@ -1,4 +1,4 @@
-"""A sweep on a real Dask scheduler with two workers comes out as it does on this machine."""
+"""A sweep on a real Dask scheduler with two workers gives the same results as on this machine."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tangy_tui.experiments.sweep import Sweep, Where
 pytestmark = [
     pytest.mark.xdist_group("cluster"),
     pytest.mark.skipif(
-        find_spec("distributed") is None,  # and not imported by every worker
+        find_spec("distributed") is None,  # so that not every worker imports it
         reason="the extra tangy[cluster] is not installed",
     ),
 ]
@@ -31,7 +31,7 @@ PATIENCE = 60.0
 
 
 class Cluster:
-    """A scheduler and its workers as child processes, only on the loopback."""
+    """A scheduler and its workers as child processes, on the loopback only."""
 
     def __init__(self, folder: Path, workers: int) -> None:
         self._folder = folder
@@ -65,9 +65,9 @@ class Cluster:
             client.wait_for_workers(workers, PATIENCE)
 
     def end(self) -> None:
-        """End what was started here."""
+        """End the child processes."""
         for process in (*self.workers, self.scheduler):
-            process.kill()  # they hold nothing that is worth a farewell
+            process.kill()  # they hold nothing worth saving
             process.wait()
 
 
@@ -174,7 +174,7 @@ def test_missing_dask_is_reported_with_the_extra_to_install(
 
 @pytest.fixture
 def tangy_in_process(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run the program as a process of its own (`tangy` is its path in this folder)."""
+    """Run the program as another process (`tangy` is its path in this folder)."""
 
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(  # noqa: S603 - our own interpreter

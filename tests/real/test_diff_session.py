@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.terminal import TANGY, Terminal
 
-QUIET = 0.5  # s without output after which a screen is taken to be drawn
+QUIET = 0.5  # s without output after which a screen counts as drawn
 ENTER, ESCAPE, TAB, BACK, UP, DOWN = "\r", "\x1b", "\t", "\x7f", "\x1b[A", "\x1b[B"
 F2, F3, F4, F6, F8, F10 = "\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[17~", "\x1b[19~", "\x1b[21~"
 DRAW, PALETTE, SHOWN = "\x0c", "\x10", "\x0f"

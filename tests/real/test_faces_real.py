@@ -14,7 +14,7 @@ from tests.real.camera_server import CameraServer
 
 
 def looking_at(camera: CameraServer, person: int) -> None:
-    """Let somebody sit before the camera, who moves the head all the time."""
+    """Put a person before the camera who moves the head all the time."""
     camera.kinds["live"] = [
         encoded(drawn_face(person, picture, size=240)).tobytes() for picture in range(60, 75)
     ]

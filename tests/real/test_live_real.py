@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 
 @pytest.fixture
 def data_folder(folder: Path) -> Path:
-    """A folder in which one guided game was shown and learnt from."""
+    """A folder with one guided game and the policy learned from it."""
     return folder
 
 
@@ -106,7 +106,7 @@ def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
         ):
             terminal.type("y")
         terminal.until("Now")
-        terminal.type("u")  # the steps in place of what staff see
+        terminal.type("u")  # the steps in place of the staff view
         terminal.until("call number")
         terminal.type("h")
         terminal.until("Who needs help?")
@@ -117,7 +117,7 @@ def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
         assert "STOPPED" in terminal.until("STOPPED")
         terminal.type("\x1b")
         terminal.until("Leave in the middle")
-        terminal.settle()  # a key from before the question was there does not answer it
+        terminal.settle()  # a key from before the question does not answer it
         terminal.type("y")
         assert terminal.wait() == 0
     finally:
@@ -125,7 +125,7 @@ def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
 
 
 def robot_process_of(program: int) -> int:
-    """Return the id of the robot process that a program has started."""
+    """Return the id of the program's robot process."""
     listed = subprocess.run(
         ["ps", "-eo", "pid,ppid,args"],  # noqa: S607
         check=True,
@@ -158,7 +158,7 @@ def test_a_robot_process_frozen_for_four_seconds_opens_one_dialog(folder: Path) 
         ):
             terminal.type("y")
         terminal.until("Now")
-        terminal.type("u")  # the steps in place of what staff see
+        terminal.type("u")  # the steps in place of the staff view
         terminal.until("call number")
         robot = robot_process_of(terminal.process.pid)
         os.kill(robot, signal.SIGSTOP)
@@ -169,7 +169,7 @@ def test_a_robot_process_frozen_for_four_seconds_opens_one_dialog(folder: Path) 
                 terminal.read(0.1)
         finally:
             os.kill(robot, signal.SIGCONT)
-        # it answers again, and says that it was frozen: that stands until staff have seen to it
+        # it answers again, and reports the freeze, until staff have dealt with it
         terminal.until("program stood still")
         assert "Also wrong" not in terminal.text
         terminal.settle()
@@ -250,7 +250,7 @@ def test_staff_control_a_live_game_by_lines_and_the_log_names_them(folder: Path)
         "stopped", "let go on", "drove", "called again", "took over", "ended",
     ):  # fmt: skip
         assert (what, "Ada") in did
-    # one command can be followed from the program to the driver and back
+    # the log shows one command from the program to the driver and back
     program = (folder / "program.log").read_text(encoding="utf-8")
     robot = (folder / "robot.log").read_text(encoding="utf-8")
     ids = re.findall(r"facilitation \[([0-9a-f]{8})\] joke for everybody begins", program)

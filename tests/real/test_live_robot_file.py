@@ -1,4 +1,4 @@
-"""`tangy live --robot FILE`: a robot that is there, named by its file, and how the program ends.
+"""`tangy live --robot FILE`: a running robot, named by its file, and how the program ends.
 
 The robot is a bench that runs beside the program and not under it, as a robot does.
 """
@@ -28,7 +28,7 @@ def test_a_robot_from_a_file_plays_and_stops_if_the_program_ends_or_hangs(
     terminal = program(robot_beside, folder)
     try:
         begin(terminal)
-        terminal.type("u")  # the steps in place of what staff see
+        terminal.type("u")  # the steps in place of the staff view
         terminal.until("call number")
         robot_beside.do("ask", person="user2")
         terminal.until("coming to you")
@@ -59,7 +59,7 @@ def test_a_tablet_is_paired_with_the_code_of_the_live_screen(
         ):
             terminal.settle()
             terminal.type("y")
-        terminal.until("No screen")  # nobody has paired a tablet yet
+        terminal.until("No screen")  # no tablet is paired yet
         terminal.type("7")
         terminal.until("chest screen")
         terminal.type(DOWN * 9 + UP)  # from the last one up

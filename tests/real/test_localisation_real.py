@@ -46,7 +46,7 @@ def folder() -> str:
 
 @pytest.fixture(scope="module")
 def way(folder: str) -> Sequence[Moment]:
-    """The scans of which the map was not drawn."""
+    """The scans that the map was not drawn from."""
     return moments(logged(folder))[1::2]
 
 

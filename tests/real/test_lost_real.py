@@ -15,7 +15,7 @@ from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
-FOUND = 0.15  # metres by which it may be off
+FOUND = 0.15  # metres of error allowed
 
 
 @pytest.mark.parametrize("seed", [5, 9])

@@ -36,7 +36,7 @@ def test_the_map_of_a_drive_by_hand_has_the_walls_of_the_room(tmp_path: Path) ->
         link.start()
 
         def recorded(forward: float, scans: int) -> bool:
-            """Drive on for a moment as somebody at the keys would; look how far it is."""
+            """Drive on for a moment by keys; return the progress."""
             link.tell("drive", forward=forward, turn=0.6)
             return link.state.number > 0 and len(log.read_text().splitlines()) > scans
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SOUND = np.random.default_rng(4).integers(-9_000, 9_000, 5 * RATE, np.int16).astype("<i2").tobytes()
 PIECE = 640  # bytes, 20 ms
-QUIET = bytes(2 * RATE)  # a second, where a stream has ended
+QUIET = bytes(2 * RATE)  # the second of quiet after a stream
 LISTEN = """
 import asyncio, sys
 from pathlib import Path
@@ -117,7 +117,7 @@ async def test_five_seconds_arrive_exactly_through_two_programs(robot: Robot) ->
     mic = await robot.mic()
     await mic.until("Connected")
     late = []
-    await mic.say(SOUND[:PIECE] * 4)  # in which it looks what kind of sound it is
+    await mic.say(SOUND[:PIECE] * 4)  # in which it detects the format
     assert await listener.hear(4 * PIECE) == SOUND[:PIECE] * 4
     for place in range(0, len(SOUND), PIECE):
         began = time.perf_counter()

@@ -65,7 +65,7 @@ def test_a_folder_of_recordings_is_evaluated(tangy: str, tmp_path: Path) -> None
 
 @pytest.fixture
 def minute(activity: Activity, people: tuple[Person, ...], tmp_path: Path) -> Path:
-    """A recording of everything that a check asks for, with pauses."""
+    """A recording of all sentences of a check, with pauses."""
     book = Phrasebook(activity, load_room().placed(people))
     quiet = bytes(2 * RATE)
     said = [

@@ -28,7 +28,7 @@ def test_guesses_of_common_words_match_the_dictionary() -> None:
 
 
 def said(text: str) -> str:
-    """Return what espeak-ng makes of its own phones, in ours."""
+    """Return espeak-ng's reading of its own phones, as Tangy's phones."""
     command = [PROGRAM, "-q", "--ipa", "--sep=_", "-v", "en-us", "--stdin"]
     done = subprocess.run(command, input=text.encode(), capture_output=True, check=True)  # noqa: S603
     return from_ipa(done.stdout.decode())

@@ -23,7 +23,7 @@ PEOPLE = ("ada", "ben", "cleo", "dot")
 
 
 async def until(source: RequestSource, *seats: int) -> None:
-    """Wait until these ask, and nobody else."""
+    """Wait until exactly these people ask."""
     async with asyncio.timeout(PATIENCE):
         async for asks in source:
             if sorted(ask.seat for ask in asks) == list(seats):
@@ -32,7 +32,7 @@ async def until(source: RequestSource, *seats: int) -> None:
 
 
 async def stale(source: RequestSource, state: str) -> None:
-    """Wait until a source is said to be in a state."""
+    """Wait until a source reports a state."""
     async with asyncio.timeout(PATIENCE):
         while source.reading().state != state:  # noqa: ASYNC110 - nobody tells
             await asyncio.sleep(0.01)
@@ -43,7 +43,7 @@ class TestMqtt:
         async with Broker() as broker, Topic(broker.url, 4, PEOPLE) as source:
             await asyncio.wait_for(broker.listened_to(), PATIENCE)
             assert broker.subscribed == ["tangy/requests/#"]
-            broker.publish("tangy/requests/3", b"1", retain=True)  # of yesterday
+            broker.publish("tangy/requests/3", b"1", retain=True)  # left from yesterday
             broker.publish("tangy/requests/2", b"1")
             await until(source, 2)
             broker.publish("tangy/requests/dot", b'{"action": "single"}')
@@ -65,7 +65,7 @@ class TestMqtt:
                 await broker.unplug()
                 await stale(source, STALE)
                 assert source.reading().age >= 0
-                assert [ask.seat for ask in source.asking] == [1]  # it is not forgotten
+                assert [ask.seat for ask in source.asking] == [1]  # the request is remembered
                 await broker.listen()
                 await asyncio.wait_for(broker.listened_to(), PATIENCE)
                 broker.publish("tangy/requests/2", b"1")
@@ -88,7 +88,7 @@ class TestMqtt:
 class TestSigns:
     @pytest.fixture
     def pictures(self, tmp_path: Path) -> Path:
-        """A table at which two people have their signs up, and then turn them down."""
+        """A table at which two people hold their signs up, and then turn them down."""
         seed = next(
             seed for seed in range(9_000, 9_100) if len(next(sequence(seed, 1)).asking) == 2
         )

@@ -29,13 +29,13 @@ from tests.real.bench_setup import setup_on
 from tests.support.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
-STOPS = 0.6  # s after the program's end in which the base stands still
+STOPS = 0.6  # s after the program's end until the base stands still
 BASE_STOPS = 1.0  # s in which a base stands by itself: half of it its time-out, and braking
 ZERO = 0.35  # s from the last data to a command to stand, for 95 of 100
 BRAKES = 0.4  # s that the bench's wheels take to stand from .5 m/s, and a tick of the bench
 TRIALS = 20
-SCANS, FIRST_SCAN, TICK = 0.1, 0.05, 0.05  # s of the bench's time
-SAID = 0.35  # s after which it is known that the robot process has ended
+SCANS, FIRST_SCAN, TICK = 0.1, 0.05, 0.05  # s of simulated time
+SAID = 0.35  # s until the end of the robot process is known
 TABLE = 5.0  # m: where its near edge is
 FROZEN = 3.0  # s, long after the link is known to be silent
 PATIENCE = 30.0
@@ -77,7 +77,7 @@ def program(bench: DeviceSimulator) -> Iterator[Program]:
 
 
 def speed(bench: DeviceSimulator) -> float:
-    """How fast the robot goes, by where it really is, in m/s of the bench's time."""
+    """The robot's true speed, in m/s of simulated time."""
     before = bench.do("truth")["truth"]
     time.sleep(0.1)
     after = bench.do("truth")["truth"]
@@ -86,7 +86,7 @@ def speed(bench: DeviceSimulator) -> float:
 
 
 def seconds_to_stop(bench: DeviceSimulator) -> float:
-    """The bench's time until the robot stands, from now on."""
+    """The simulated time until the robot stands, from now on."""
     began = bench.do("truth")["truth"]["time"]
     until = time.monotonic() + PATIENCE
     while time.monotonic() < until:
@@ -132,7 +132,7 @@ def test_a_program_that_continues_does_not_resume_the_drive(
 
 
 def is_there(process: int) -> bool:
-    """Say whether a process runs; one that has ended may lie about until somebody looks."""
+    """Return whether a process runs; a process that has ended may remain as a zombie."""
     try:
         stat = Path(f"/proc/{process}/stat").read_text()
     except OSError:
@@ -167,7 +167,7 @@ def test_a_stop_overtakes_a_drive_and_latches(bench: DeviceSimulator, link: Robo
 
 
 def seconds_to_zero(bench: DeviceSimulator) -> float:
-    """How long after the last scan the base is told to stand, when the scanner falls silent now."""
+    """The delay from the last scan to the command to stand, if the scanner falls silent now."""
     began = time.monotonic()
     bench.do("inject", kind="laser-disconnected")
     ticks: int = round((bench.do("truth")["truth"]["time"] - FIRST_SCAN) / TICK)
@@ -245,7 +245,7 @@ def test_a_frozen_robot_process_stays_stopped_until_release(
 def test_driving_by_hand_is_slow_near_the_table_and_stops_before_it(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
-    """The table's top is above the scanner: that it is there, the map has to tell."""
+    """The table's top is above the scanner: only the map shows it."""
     fastest = 0.0
 
     def drive(forward: float, turn: float, until: Callable[[dict[str, Any]], bool]) -> None:

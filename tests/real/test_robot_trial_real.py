@@ -83,7 +83,7 @@ screen = {{ kind = "page", port = 0 }}
     assert "nobody answers at ws://127.0.0.1:9" in found["Tangy's wheels"]["text"]
     assert "no tablet has opened http://127.0.0.1:" in found["Tangy's chest screen"]["text"]
     assert "the code that pairs it is " in found["Tangy's chest screen"]["text"]
-    assert found["Tangy's chest screen"]["state"] == "missing"  # nobody looks yet
+    assert found["Tangy's chest screen"]["state"] == "missing"  # nobody looks at it yet
     assert found["Tangy's arms"]["state"] == "missing"
     working.cancel()
     await scanner.close()
@@ -103,7 +103,7 @@ async def test_a_frozen_scanner_is_stale_despite_its_connection() -> None:
         os.kill(process.pid, signal.SIGSTOP)
         await until(lambda: laser.reading().state == "STALE", PATIENCE)
         reading = laser.reading()
-        assert 0.25 < reading.age < 2 and laser.why == ""  # no word of a lost connection
+        assert 0.25 < reading.age < 2 and laser.why == ""  # it reports no lost connection
         os.kill(process.pid, signal.SIGCONT)
         await until(lambda: laser.reading().state == "OK", PATIENCE)
     finally:

@@ -4,7 +4,7 @@
         python3-nav-msgs python3-geometry-msgs python3-diagnostic-msgs python3-trajectory-msgs \
         python3-move-base-msgs python3-actionlib
 
-And our server against a client that others wrote, PyPI's roslibpy.
+It also runs Tangy's server against a client of others, PyPI's roslibpy.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("ros"), pytest.mark.else
 
 
 def absent() -> str:
-    """Say what is missing for these tests, "" if nothing is."""
+    """Return what these tests need and this machine lacks; "" for nothing."""
     if shutil.which("roscore", path="/usr/bin") is None:
         return "there is no ROS 1 (Debian: ros-base)"
     found = subprocess.run(  # noqa: S603
@@ -112,7 +112,7 @@ def ros(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ros]:
     if why := absent():
         pytest.skip(why)
     home = tmp_path_factory.mktemp("ros")
-    # Debian's Python has none of its own; nothing else is to be taken from ours.
+    # Debian's Python has no websockets; it must import nothing else from this environment.
     (home / "packages").mkdir()
     (home / "packages" / "websockets").symlink_to(Path(str(websockets.__file__)).parent)
     with socket.socket() as free:
@@ -202,7 +202,7 @@ async def test_scans_joints_voice_and_diagnostics_work_over_ros(ros: Ros) -> Non
         assert (len(scan.ranges), scan.farthest) == (360, 10.0)
         assert [math.isinf(beam) for beam in scan.ranges[:4]] == [True, True, True, False]
         assert not button.latched
-        await asyncio.sleep(1)  # topics of ROS 1 begin late: the robot must have found us
+        await asyncio.sleep(1)  # topics of ROS 1 begin late: the robot must have found the client
         await arms.pose({"head": (-20, 30)}, 0.2)
         assert arms.positions["head/neck nod"] == pytest.approx(math.radians(-20))
         await voice.say("The next number is B 7")

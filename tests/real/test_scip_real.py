@@ -1,4 +1,4 @@
-"""SCIP 2.0 with other software: MRPT and hokuyolx read our scanner; our driver over a cable."""
+"""SCIP 2.0 with other software: MRPT and hokuyolx read Tangy's scanner; its driver over a cable."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ pose_x = 0
 
 
 def found(folder: Path, end: str) -> list[Path]:
-    """Return the files whose names end so."""
+    """Return the files whose names end with this."""
     return sorted(folder.glob("*" + end))
 
 
 class Turning:
-    """A scanner that turns: every so often it sees the same, the first beam counting the scans."""
+    """A scanner that turns: each scan is the same, but its first beam counts the scans."""
 
     def __init__(self, scanner: Scanner = URG) -> None:
         self.server = ScipServer(scanner)
@@ -72,7 +72,7 @@ class Turning:
 
     @staticmethod
     def seen(turn: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        """What it sees in a turn."""
+        """Its scan of one turn."""
         ranges = SEEN.copy()
         ranges[0] = 1 + turn / 1000
         return ranges
@@ -101,7 +101,7 @@ async def test_mrpt_reads_every_scan_unchanged(turning: Turning, tmp_path: Path)
     )  # fmt: skip
     await until(lambda: turning.server.sent >= 15, PATIENCE)
     async with asyncio.timeout(PATIENCE):
-        said, _ = await grabber.communicate(b"\x1b")  # Escape, which ends it
+        said, _ = await grabber.communicate(b"\x1b")  # Escape ends it
     log = said.decode(errors="replace")
     assert "MODL:URG-04LX" in log, log
     (raw,) = found(tmp_path, ".rawlog")
@@ -126,7 +126,7 @@ async def test_hokuyolx_reads_single_and_continuous_scans(turning: Turning) -> N
     hokuyolx = pytest.importorskip("hokuyolx", reason="hokuyolx is not installed")
 
     def use() -> None:
-        # One read takes a whole reply: it would not tell apart two that came together.
+        # One read takes a whole reply: the client would not separate two that came together.
         scanner = hokuyolx.HokuyoLX(
             addr=("127.0.0.1", turning.server.port), tsync=False, convert_time=False, buf=1 << 16
         )
@@ -186,7 +186,7 @@ async def test_the_driver_takes_over_a_measuring_scanner() -> None:
     pytest.importorskip("serial", reason="pyserial is not installed")
     server = ScipServer(URG)
     path = server.serve_serial()
-    # Whoever had it before was killed in the middle of a command, while scans kept coming.
+    # The earlier client was killed in the middle of a command, while scans kept coming.
     before = os.open(path, os.O_RDWR | os.O_NOCTTY)
     os.write(before, b"BM\nMD0000035901000\nVV;half a comm")
     async with asyncio.timeout(PATIENCE):

@@ -36,7 +36,7 @@ async def test_camera_states_pictures_and_cards_arrive_over_the_link(link: Robot
     sensors = LinkedSensors(link, robot, load_activity("bingo").deck)
     assert (sensors.cameras, sensors.card_device) == (("camera",), "camera")
     assert {"link", "base", "laser", "camera"} <= {one.device for one in sensors.health()}
-    assert "arms" not in {one.device for one in sensors.health()}  # it has none here
+    assert "arms" not in {one.device for one in sensors.health()}  # this robot has none
     async with sensors:
         await until(lambda: sensors.sight("camera").state == "OK")
         assert sensors.source("camera") == link.setup.cameras["camera"]

@@ -26,7 +26,7 @@ MARKED = 0b00100_01010_10001_00000_11111
 
 @pytest.fixture(scope="module")
 def cards(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> Path:
-    """A folder of pictures of card 17, as a camera sees it whose picture is never the same."""
+    """A folder of pictures of card 17 from a camera whose picture always varies."""
     folder = tmp_path_factory.mktemp("cards")
     camera = CardCamera(activity.deck, title=activity.title)
     random = np.random.default_rng(5)

@@ -44,7 +44,7 @@ def test_the_screen_shows_a_camera_failing_and_recovering(
         server.mode = "live"
         server.listen()
         text = terminal.until("   head camera       working")
-        assert "TANGY sensors" in text and "Last card" in text  # and nothing lies over them
+        assert "TANGY sensors" in text and "Last card" in text  # and nothing covers them
         terminal.type("\x1b")
         assert terminal.wait() == 0
         assert not [pid for pid in started if alive(pid)]

@@ -1,4 +1,4 @@
-"""The sound of an item out of a robot's loudspeaker: the robot process, espeak-ng and aplay.
+"""The sound of an item from a robot's loudspeaker: the robot process, espeak-ng and aplay.
 
 ALSA's sound card is a named pipe that is read as fast as a loudspeaker plays.
 """
@@ -28,7 +28,7 @@ from tests.support.waiting import wait_until
 RATE = 22_050
 PIECE = 0.05  # s
 LOUD = 20_000  # of 32,767
-AFTER_STOP = 0.5  # s in which the loudspeaker has to be silent
+AFTER_STOP = 0.5  # s until the loudspeaker must be silent
 PIPE = 4_096  # bytes that the pipe holds: .09 s
 
 pytestmark = [
@@ -88,7 +88,7 @@ def loudspeaker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Lou
 
 @pytest.fixture
 def robot(bench: DeviceSimulator, loudspeaker: Loudspeaker) -> Iterator[RobotLink]:
-    """A robot on the bench with a loudspeaker of this machine."""
+    """A robot on the bench with this machine's loudspeaker."""
     setup = setup_on(bench)
     drivers = {**setup.drivers, "voice": {"kind": "spoken", "sink": "aplay"}}
     link = RobotLink(replace(setup, drivers=drivers))
@@ -109,7 +109,7 @@ def song(folder: Path, seconds: float) -> tuple[Path, NDArray[np.int16]]:
 
 
 def found_in(samples: NDArray[np.int16], played: NDArray[np.int16]) -> int:
-    """Return where a sound begins in what was played, as a byte offset; -1: nowhere."""
+    """Return where a sound begins in the played sound, as a byte offset; -1: nowhere."""
     return played.tobytes().find(samples.tobytes())
 
 
@@ -121,7 +121,7 @@ def test_the_song_is_played_whole_after_the_sentence_and_not_changed(
     wait_until(lambda: found_in(samples, loudspeaker.samples) > 0, "the song is heard")
     begins = found_in(samples, loudspeaker.samples)
     spoken = loudspeaker.samples[: begins // 2].astype(float)
-    assert 500 < np.abs(spoken).max() < 32_767  # it is heard, and not clipped
+    assert 500 < np.abs(spoken).max() < 32_767  # audible, and not clipped
     assert np.abs(loudspeaker.samples[begins // 2 :]).max() <= LOUD
 
 

@@ -109,7 +109,7 @@ class Studio:
         return self.run(self.recogniser.decode(pcm))
 
     def hear(self, pcm: bytes) -> tuple[str, str | None, dict[str, str]]:
-        """Return the tier of an utterance, and what is likeliest meant by it."""
+        """Return the tier of an utterance, and its likeliest meaning."""
         said = understand(self.decode(pcm), BOOK, USUAL)
         if not isinstance(said, Say) or not said.commands:
             return tier_of(said), None, {}
@@ -121,7 +121,7 @@ class Studio:
 
 
 def hands_free(pcm: bytes) -> tuple[float, AcousticEvidence]:
-    """Return the first utterance in a sound, and after how many s of it that was known."""
+    """Return the first utterance in a sound, and its delay from the sound's beginning in s."""
     answers: list[dict[str, Any]] = []
     worker = Worker(answers.append)
     worker.take({"id": 1, "wanted": encode(WANTED)})
@@ -149,7 +149,7 @@ def _studio() -> Iterator[Studio]:
 
 @pytest.fixture
 def studio(_studio: Studio) -> Studio:
-    """The worker that listens for all phrases, alive."""
+    """The running worker that listens for all phrases."""
     _studio.told.clear()
     _studio.recogniser.partial = lambda words: None
     return _studio
@@ -180,7 +180,7 @@ class TestVoices:
             found = understand(evidence, book, USUAL)
             assert isinstance(found, Say) and found.commands, said
             assert found.commands[0].behaviour == meant
-            assert evidence.words not in evidence.guesses  # the words alone were misheard
+            assert evidence.words not in evidence.guesses  # only the words were misheard
         assert not decoder.decode(voices.say(*KNOWN[0][:2]), "commands").guesses
         decoder.close()
 
@@ -275,7 +275,7 @@ class TestStream:
             sound.put_nowait(b"")
             return await hearing
 
-        heard = studio.run(talk())  # in the pause at its end: without the last of the quiet
+        heard = studio.run(talk())  # in the pause at its end, before the last quiet has passed
         assert (heard.words, heard.phrase) == (alone.words, alone.phrase)
         assert studio.recogniser.pid not in (None, first)
         assert studio.recogniser.said == pcm
@@ -309,7 +309,7 @@ class TestStream:
     ) -> None:
         pcm = voices.say(said, voice)
         loud = [abs(sample) > 1000 for sample in memoryview(pcm).cast("h")]
-        last = (len(loud) - loud[::-1].index(True)) / RATE  # s, where its last sound ends
+        last = (len(loud) - loud[::-1].index(True)) / RATE  # s, the end of its last sound
         seconds, evidence = hands_free(pcm)
         assert isinstance(understand(evidence, BOOK, USUAL), StopCommand)
         assert seconds - last <= soon
@@ -339,7 +339,7 @@ class TestStream:
             sound: asyncio.Queue[bytes] = asyncio.Queue()
             hearing = asyncio.create_task(studio.recogniser.hear(sound))
             await self.speak(sound, pcm)
-            await until(sound.empty)  # words that stay the same are not told again
+            await until(sound.empty)  # unchanged words are not reported again
             ended_at = perf_counter()
             sound.put_nowait(b"")
             await hearing

@@ -19,8 +19,8 @@ from tests.support.processes import Family
 from tests.support.terminal import TANGY, Terminal
 from tests.support.wheels import Wheels, rosbridge
 
-STOPS = 1.0  # s after the last word, in which the wheels stand; the goal of .5 is measured by hand
-DRIVES = 0.1  # m/s, from which it is on its way
+STOPS = 1.0  # s after the last word until the wheels stand; the goal of .5 is measured by hand
+DRIVES = 0.1  # m/s, from which it counts as driving
 PATIENCE = 60.0
 
 pytestmark = [
@@ -71,12 +71,12 @@ def test_a_spoken_stop_halts_the_driving_wheels_at_once(
 ) -> None:
     said = Voices(tmp_path).say(words, voice)
     loud = np.abs(np.frombuffer(said, "<i2").astype(int)) > 1000
-    last = (len(loud) - int(np.argmax(loud[::-1]))) / RATE  # s, where its last sound ends
+    last = (len(loud) - int(np.argmax(loud[::-1]))) / RATE  # s, the end of its last sound
     if "Is all well now?" in terminal.until(
         lambda text: "greet everyone" in text or "well" in text
     ):
         terminal.type("y")
-    terminal.type("u")  # the steps in place of what staff see
+    terminal.type("u")  # the steps in place of the staff view
     terminal.until("call number")
     terminal.type("h")
     terminal.until("Who needs help?")
@@ -116,7 +116,7 @@ def test_a_recording_plays_after_the_robot_is_open(
         began = time.monotonic()
         terminal.until("STOPPED")
         terminal.until("Heard: stop the robot")
-        assert time.monotonic() - began > 9  # s: not read out before it was said
+        assert time.monotonic() - began > 9  # s: not transcribed before it was said
         terminal.until("The recording is over.")
     finally:
         terminal.end()

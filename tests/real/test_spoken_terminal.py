@@ -48,7 +48,7 @@ def laptop(tangy: str, tmp_path: Path) -> Iterator[Callable[[], Laptop]]:
 
 
 def steps(tangy: str, data: Path) -> list[str]:
-    """Return the behaviours that are in the log of what was shown."""
+    """Return the behaviours of the demonstration, by the log."""
     kept = subprocess.run(  # noqa: S603 - our own program
         [tangy, "teach", "--json", "--data", str(data)],
         input="",
@@ -104,7 +104,7 @@ def test_push_to_talk_over_a_laptop_microphone_gives_a_step(
     terminal.type("t")
     terminal.until("● listening")
     microphone.say(terminal, voices.say("greet everyone"))
-    terminal.until(lambda text: "greet" in text.partition("● listening")[2])  # as it is said
+    terminal.until(lambda text: "greet" in text.partition("● listening")[2])  # while it is spoken
     terminal.type("t")
     terminal.until("Did you say: greet everyone?")
     terminal.settle(0.4)
@@ -114,7 +114,7 @@ def test_push_to_talk_over_a_laptop_microphone_gives_a_step(
     terminal.type("t")
     terminal.until("● listening")
     microphone.say(terminal, voices.say("stop"))
-    terminal.until("Heard: stop.")  # by itself
+    terminal.until("Heard: stop.")  # without a key
     terminal.type("\x03")
     assert terminal.wait() == 0
     assert steps(tangy, tmp_path / "data") == ["greeting"]
@@ -180,7 +180,7 @@ def test_a_no_executes_nothing_and_takes_the_next_command(
     terminal.type("n")
     terminal.until(lambda text: "Did you say" not in text and "> type a command" in text)
     assert "No steps yet" in terminal.text
-    terminal.type("greet everyone\r")  # what was heard is not in the line
+    terminal.type("greet everyone\r")  # the heard words are not in the line
     terminal.until("Did you say: greet everyone?")
 
 

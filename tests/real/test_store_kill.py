@@ -52,8 +52,8 @@ def start(script: str, folder: Path) -> subprocess.Popen[str]:
 
 @pytest.mark.slow
 def test_every_acknowledged_event_survives_a_kill(tmp_path: Path) -> None:
-    """Kill the writer again and again, at a random acknowledgement, while it goes on writing."""
-    rng = random.Random()  # a new story each time; the law holds for all of them
+    """Kill the writer repeatedly, at a random acknowledgement, while it goes on writing."""
+    rng = random.Random()  # new numbers each time; the law holds for all of them
     acknowledged = total = 0
     for _ in range(KILLS):
         with start(WRITER, tmp_path) as child:
@@ -61,7 +61,7 @@ def test_every_acknowledged_event_survives_a_kill(tmp_path: Path) -> None:
             wanted = rng.choice([0, 1, 2, rng.randrange(60)])
             said = [line for _, line in zip(range(wanted), child.stdout, strict=False)]
             child.kill()
-            said += child.stdout  # said before it died: acknowledged all the same
+            said += child.stdout  # printed before it died, so acknowledged
         numbers = [int(line) for line in said if line.endswith("\n") and line != "open\n"]
         acknowledged = max([acknowledged, *numbers])
         with Store.open(tmp_path) as store:
@@ -81,7 +81,7 @@ def test_a_second_writer_is_refused_until_the_first_ends(tmp_path: Path) -> None
         with pytest.raises(StoreBusy) as caught:
             Store.open(tmp_path)
         assert f"(process {child.pid})" in str(caught.value) and "--data" in str(caught.value)
-        with Store.open(tmp_path, write=False) as console:  # reading is for everybody
+        with Store.open(tmp_path, write=False) as console:  # everybody may read
             assert [event.kind for event in console.events()] == ["greeting"]
         child.stdin.close()
         assert child.wait(30) == 0

@@ -48,7 +48,7 @@ def _shows(parts: tuple[str, ...], text: str) -> bool:
 
 
 def _answered(tmux: Tmux, text: str) -> bool:
-    """Press y until the question has taken it: it takes none in its first moment."""
+    """Press y until the question accepts it: in its guard time it accepts none."""
     if "-> greet everyone" in text:
         return True
     if "Did you say" in text:
@@ -123,7 +123,7 @@ def test_a_second_program_on_the_same_folder_names_the_first(
     assert second.wait() == 2
     words = " ".join(second.text.split())
     assert str(first.process.pid) in words
-    assert "--data" in "".join(words.split())  # wherever the line breaks
+    assert "--data" in "".join(words.split())  # the line may break anywhere
     first.type("greet everyone\r")
     first.until("Did you say")
 

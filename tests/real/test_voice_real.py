@@ -48,7 +48,7 @@ def synthesiser(tmp_path: Path) -> Synthesiser:
 
 @pytest.fixture
 def card(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
-    """A sound card for ALSA that is a named pipe: what is played is read from this descriptor.
+    """A named pipe as ALSA's sound card: the played sound is read from this descriptor.
 
     It plays no faster than it is read.
     """
@@ -65,7 +65,7 @@ def card(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
 @pytest.fixture
 def no_card(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let ALSA find no sound card."""
+    """Hide every sound card from ALSA."""
     settings = tmp_path / "none.conf"
     settings.write_text("")
     monkeypatch.setenv("ALSA_CONFIG_PATH", str(settings))
@@ -78,7 +78,7 @@ def samples(path: Path) -> NDArray[np.float64]:
 
 
 def parts(path: Path) -> tuple[list[float], list[float]]:
-    """Return how long what is spoken is, and the pauses (0.3 s and more) between, in seconds."""
+    """Return the length of the spoken sound, and the pauses (0.3 s and more) in it, in seconds."""
     sound = samples(path)
     frames = sound[: len(sound) // 220 * 220].reshape(-1, 220).std(axis=1) >= QUIET
     written = "".join("x" if loud else "." for loud in frames).strip(".")
@@ -87,7 +87,7 @@ def parts(path: Path) -> tuple[list[float], list[float]]:
 
 
 def listen(card: int, wanted: int) -> bytes:
-    """Listen to the sound card until so many bytes were heard, or nobody plays any more."""
+    """Listen to the sound card until this many bytes were heard, or the players have ended."""
     heard = b""
     poll = select.poll()
     poll.register(card, select.POLLIN)
@@ -106,7 +106,7 @@ async def hear(card: int, wanted: int) -> bytes:
 
 
 def phonemes(text: str) -> str:
-    """Ask espeak-ng how it pronounces what is said."""
+    """Return espeak-ng's pronunciation of a text."""
     said = subprocess.run(
         ["espeak-ng", "--stdin", "-q", "-x", "-m", "-z", "-v", "en-us"],  # noqa: S607
         input=marked_up(as_called(text, DECK)),
@@ -209,7 +209,7 @@ async def test_hush_cuts_a_line_within_a_word(synthesiser: Synthesiser, card: in
     assert gate == ["shut"]
     voice.hush()
     assert not await line
-    rest = await hear(card, 10_000_000)  # ends when nobody plays any more
+    rest = await hear(card, 10_000_000)  # ends when the players have ended
     await voice.quiet()
     assert gate == ["shut", "open"]
     (path,) = synthesiser.folder.iterdir()

@@ -13,8 +13,8 @@ from tests.support.processes import Family
 from tests.support.terminal import TANGY, Terminal
 from tests.support.wheels import Wheels, rosbridge
 
-STOPS = 0.5  # s from the STOP, in which the wheels stand
-DRIVES = 0.25  # m/s, from which it is on its way
+STOPS = 0.5  # s from the STOP until the wheels stand
+DRIVES = 0.25  # m/s, from which it counts as driving
 STANDS = 1e-3  # m/s
 PATIENCE = 60.0
 

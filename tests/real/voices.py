@@ -1,4 +1,4 @@
-"""Synthetic voices and noises for the tests of speech, made once and kept for a test run."""
+"""Synthetic voices and noises for the tests of speech, made once in a test run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from tangy_hw.audio.wav import RATE, read_wav
 
 FESTIVAL = "kal_diphone"
-NOISES = {  # what sox makes of nothing
+NOISES = {  # made by sox without an input
     "a tone": "synth 2 sine 440 vol 0.4",
     "a hum": "synth 2 sine 100 sine 200 sine 300 vol 0.5",
     "claps": "synth 0.06 whitenoise fade l 0 0.06 0.05 vol 0.7 pad 0.3 0.3 repeat 3",
@@ -23,13 +23,13 @@ NOISES = {  # what sox makes of nothing
 
 
 class Voices:
-    """Says what it is told, as flite's voices do, or festival's; each sound is made once."""
+    """Speaks as flite's or festival's voices; each sound is made once."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def file(self, text: str, voice: str = "slt") -> Path:
-        """Return a WAV file in which something is said."""
+        """Return a WAV file of a sentence."""
         path = self.folder / f"{text.replace(' ', '-')}.{voice}.wav"
         if not path.exists():
             if voice == FESTIVAL:
@@ -44,7 +44,7 @@ class Voices:
         return path
 
     def say(self, text: str, voice: str = "slt", *, noise: float = 60.0) -> bytes:
-        """Return 16 kHz mono s16le, with a room around it that is so many dB more quiet."""
+        """Return 16 kHz mono s16le, with the noise of a room this many dB below it."""
         return room(read_wav(self.file(text, voice)), noise)
 
     def noise(self, name: str) -> bytes:
@@ -61,7 +61,7 @@ class Voices:
 
 
 def room(pcm: bytes, below: float) -> bytes:
-    """Put a sound into a room: half a second around it, and a white noise below it in dB."""
+    """Put a sound into a room: half a second around it, and white noise this many dB below it."""
     said = np.frombuffer(pcm, "<i2").astype(np.float64)
     quiet = np.zeros(RATE // 2)
     samples = np.concatenate([quiet, said, quiet])
