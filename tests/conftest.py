@@ -1,4 +1,4 @@
-"""What many tests begin with: an activity, games demonstrated well, a store, the command line."""
+"""Shared fixtures: an activity, well demonstrated games, a store, the command line."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policy import Policy
 
-# The same examples in every run; HYPOTHESIS_PROFILE=explore looks for new ones.
+# The same examples in every run; HYPOTHESIS_PROFILE=explore tries new ones.
 settings.register_profile(
     "tangy",
     deadline=None,
@@ -44,17 +44,17 @@ settings.register_profile(
 settings.register_profile(AT_LENGTH, settings.get_profile("tangy"))
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tangy"))
 
-# Screens and forests are many objects that live as long as their test: looking for cycles among
-# them after every 700 new ones, as Python does, takes a fifth of the suite's time.
+# Screens and forests are many objects that live as long as their test: searching them for cycles
+# after every 700 new ones, as Python does, takes a fifth of the suite's time.
 gc.set_threshold(100_000, 10, 10)
 
-# An installed program is compiled already. Where the environment forbids to keep what was compiled,
-# each of the hundreds of programs that tests start, and each worker, would compile it all again.
+# An installed program is compiled already. If the environment forbids writing compiled files, each
+# of the hundreds of programs that tests start, and each worker, would compile everything again.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
-# A shell that runs something in its background makes it ignore Ctrl-C, and `nohup` a hang-up. So
-# would every program that tests start: they would not end, and go on beside the tests that follow.
+# A shell's background job ignores Ctrl-C, and `nohup` makes it ignore a hang-up. Every program that
+# tests start would inherit this: it would not end, and run on beside the tests that follow.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
@@ -66,7 +66,7 @@ TESTS = Path(__file__).parent
 
 MEMORY, ROOM = Path("/dev/shm"), 4_000_000_000  # noqa: S108 - a disk in memory, bytes free there
 if MEMORY.is_dir() and shutil.disk_usage(MEMORY).free >= ROOM:
-    # The log waits for the disk after every event, and tests write ten thousands of them.
+    # The log waits for the disk after every event, and tests write tens of thousands of them.
     os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(MEMORY))
 
 
@@ -92,7 +92,7 @@ def _demonstration(name: str, seed: int, users: int) -> Demonstration:
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Keep the tests away from the user's cache: a new name empties that of spoken lines."""
+    """Keep tests off the user's cache: a new name empties the cache of spoken lines."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         yield
@@ -100,7 +100,7 @@ def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def activity() -> Activity:
-    """The activity that ships."""
+    """The shipped activity."""
     return _activity("bingo")
 
 
@@ -130,7 +130,7 @@ def demonstrate() -> Callable[[str, int, int], Demonstration]:
 
 @pytest.fixture(scope="session")
 def cover() -> Callable[[str, int, int], tuple[Demonstration, ...]]:
-    """Demonstrate games until every situation was shown: (activity, seed, users) -> them."""
+    """Demonstrate games until every situation was shown: (activity, seed, users) -> games."""
 
     def covering(name: str, seed: int, users: int) -> tuple[Demonstration, ...]:
         missing = set(_activity(name).expected)
@@ -147,7 +147,7 @@ def cover() -> Callable[[str, int, int], tuple[Demonstration, ...]]:
 
 @pytest.fixture
 def store(tmp_path: Path) -> Iterator[Store]:
-    """An empty log that may be written."""
+    """An empty log, open for writing."""
     with Store.open(tmp_path / "data") as opened:
         yield opened
 
@@ -174,7 +174,7 @@ def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def taught(_taught: Path, tmp_path: Path) -> Path:
-    """A data folder in which three demonstrations were given and learnt from."""
+    """A data folder with three demonstrations and a policy learned from them."""
     return Path(shutil.copytree(_taught, tmp_path / "taught"))
 
 
@@ -195,13 +195,13 @@ def learnt(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
 
 @pytest.fixture
 def data_folder(tmp_path: Path) -> Path:
-    """The data folder of `workspace`; tests that begin with something in it give another."""
+    """The data folder of `workspace`; tests that begin with data override it."""
     return tmp_path / "data"
 
 
 @pytest.fixture
 def workspace(data_folder: Path) -> Iterator[Workspace]:
-    """A workspace with a data folder of its own, in which nothing was learnt yet."""
+    """A workspace with its own data folder and no policy yet."""
     from tangy_tui.app.workspace import Workspace
 
     opened = Workspace(data_folder)
@@ -237,9 +237,9 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let each worker begin with other folders: what one has compiled, the others find.
+    """Let workers share folders, so that each finds the files that others have compiled.
 
-    Pytest rewrites every `assert` of a fresh checkout, which takes as long as to import it all.
+    Pytest rewrites every `assert` of a fresh checkout, which takes as long as importing everything.
     """
     about = getattr(config, "workerinput", None)
     if about is None or config.args != ["tests"]:
@@ -254,28 +254,28 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class InOrder:
-    """Puts tests back into the order of their files, which is the same on every worker."""
+    """Restores the order of files, which is the same on every worker."""
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Sort what was collected."""
+        """Sort the collected tests."""
         items.sort(key=lambda item: item.path)
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Keep on one worker what shares costly preparations (`xdist_group`).
+    """Keep tests with shared costly preparations on one worker (`xdist_group`).
 
-    From pytest 9.2 on, pytest-xdist 3.8 writes the group where nobody reads it any more, and says
-    nothing (pytest-xdist#1386): three workers then prepare, or wait for, the same thing.
+    From pytest 9.2 on, pytest-xdist 3.8 writes the group where nothing reads it, without a
+    warning (pytest-xdist#1386): three workers then prepare, or wait for, the same thing.
     """
     for item in items if config.getoption("loadgroup", False) else ():
         groups = sorted({str(mark.args[0]) for mark in item.iter_markers("xdist_group")})
-        there = getattr(item, "_id", None)  # before pytest 9.2 there is none, and xdist manages
+        there = getattr(item, "_id", None)  # missing before pytest 9.2, where xdist works
         if groups and there is not None:
             group = "_".join(groups)
             setattr(item, "_id", type(there).parse(f"{item.nodeid}@{group}"))  # noqa: B010
-    if config.getoption("loadgroup", False):  # else one worker goes on when the others are done
+    if config.getoption("loadgroup", False):  # else one worker remains when the others are done
         items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)
 
 
@@ -283,9 +283,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Fail what skips where every program is there that tests drive (`.ci/run` says so).
+    """Fail skipped tests if every program that tests drive is installed (`.ci/run` says so).
 
-    What needs something that no package brings (`elsewhere`) may skip there, and says why.
+    Tests that need something that no package brings (`elsewhere`) may skip, with their reason.
     """
     report = yield
     elsewhere = item.get_closest_marker("elsewhere") is not None

@@ -1,4 +1,4 @@
-"""Putting demonstrations into a log as a teaching session does, with answers of one's choice."""
+"""Logging demonstrations as a teaching session does, with chosen answers."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def log_demonstration(store: Store, shown: Demonstration) -> None:
 
 
 def answering(shown: Demonstration, user_state: str, behaviour: str) -> Demonstration:
-    """Return a demonstration that gives another answer wherever a person is doing so."""
+    """Return a demonstration with another answer in every situation with this user state."""
     steps = tuple(
         replace(step, behaviour=behaviour)
         if step.state.situation.user_state == user_state
@@ -50,7 +50,7 @@ def answering(shown: Demonstration, user_state: str, behaviour: str) -> Demonstr
 
 
 class SlowClock:
-    """A clock that goes on a second with each look at it, so that pictures stay as they are."""
+    """A clock that advances a second at each reading, so that pictures stay the same."""
 
     def __init__(self) -> None:
         self._time = datetime(2026, 3, 2, 9, 0, tzinfo=UTC)

@@ -1,11 +1,11 @@
-"""Record what the program does, and compare two recordings.
+"""Record the program's behaviour, and compare two recordings.
 
     python -m tests.oracle record DIR [--seeds 30] [--live 2] [--jobs 2]
     python -m tests.oracle compare BEFORE AFTER
 
-A refactoring may change nothing that a user, a script or a log can see. A recording holds the JSON
-documents of the verbs for many seeds, the bodies of the log, every help page, and screens as text.
-Ids and times differ in every run, so they are replaced (see `normal.py`).
+A refactoring must not change anything visible to a user, a script or a log. A recording holds the
+JSON documents of the verbs for many seeds, the bodies of the log, every help page, and screens as
+text. Ids and times differ in every run, so they are replaced (see `normal.py`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What differs in every run, replaced: ids by the order in which they come, times by a word."""
+"""Replaces ids by the order of their appearance and times by a word, as they vary by run."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Names:
         self._known: dict[str, str] = {}
 
     def text(self, text: str) -> str:
-        """Return a text without ids, times and paths of its own."""
+        """Return a text without ids, times and paths of its run."""
         text = _ID.sub(lambda m: self._known.setdefault(m[0], f"<id {len(self._known)}>"), text)
         text = _CLOCK.sub("<clock>", _DAY.sub("<day>", _TIME.sub("<time>", text)))
         return _PATH.sub("<path>", text)
@@ -46,7 +46,7 @@ class Names:
         return self.text(value) if isinstance(value, str) else value
 
     def document(self, text: str) -> str:
-        """Return the text of a JSON document (or of lines, where it is none)."""
+        """Return the text of a JSON document (or of its lines, if it is none)."""
         try:
             value = json.loads(text)
         except json.JSONDecodeError:

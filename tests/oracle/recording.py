@@ -1,4 +1,4 @@
-"""Runs the program as it is installed beside this Python, and keeps what it says as text files."""
+"""Runs the program that is installed beside this Python, and records its output as text files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def record(folder: Path, *, seeds: int, live: int, jobs: int) -> None:
     """Write the recording to an empty folder.
 
     Raises:
-        FileExistsError: where there is something in the folder.
+        FileExistsError: the folder is not empty.
     """
     folder.mkdir(parents=True, exist_ok=False)
     scripted = ["--teacher", "scripted"]
@@ -73,7 +73,7 @@ EXPERIMENTS: list[Answer] = [
 
 
 def _seed_commands(seed: int) -> list[Answer]:
-    """Return the commands of one data folder, in the order in which they are given."""
+    """Return the commands for one data folder, in order."""
     own = ["--seed", str(seed)]
     scripted = ["--teacher", "scripted"]
     inject = [word for fault in FAULTS for word in ("--inject", fault)]
@@ -144,7 +144,7 @@ def _tangy(words: list[str], typed: str, home: str) -> subprocess.CompletedProce
 
 
 def _events(data: Path) -> str:
-    """Return the events of a log, in their order."""
+    """Return the events of a log, in order."""
     if not (data / "tangy.db").exists():
         return ""
     with sqlite3.connect(data / "tangy.db") as store:
@@ -155,7 +155,7 @@ def _events(data: Path) -> str:
 
 
 def _helps(folder: Path) -> None:
-    """Keep the help page of every verb, found by walking from the first page."""
+    """Record the help page of every verb, found by walking from the first page."""
     pages = [_help_page([])]
     for text in pages:
         words = text.splitlines()[0].removeprefix("$ tangy").split()[:-1]
@@ -171,7 +171,7 @@ def _help_page(words: list[str]) -> str:
 
 
 def _screens(folder: Path, scene: Scene) -> None:
-    """Keep what a scene shows after each of its steps."""
+    """Record a scene's text after each of its steps."""
     folder.mkdir(exist_ok=True)
     with TemporaryDirectory(prefix="tangy-oracle-") as data:
         for words in scene.before:

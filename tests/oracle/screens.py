@@ -1,4 +1,4 @@
-"""Scenes on a real terminal: keys are typed, and what can then be read is kept."""
+"""Scenes on a real terminal: keys are typed, and the readable text is recorded."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TAUGHT = (_GUIDED, ["learn"])
 
 @dataclass(frozen=True)
 class Scene:
-    """A program in a terminal of a size, and the keys that are typed there one after the other.
+    """A program in a terminal of a size, and the keys that are typed there in turn.
 
     Each entry of `keys` is the text that must be on the screen first (or "" for a settled screen),
     and the keys that are typed then.
@@ -33,7 +33,7 @@ class Scene:
 
 
 def show(scene: Scene, data: str) -> str:
-    """Return what the scene shows at first and after each entry of its keys."""
+    """Return the scene's text at first and after each entry of its keys."""
     columns, lines = scene.size
     terminal = Terminal(
         [TANGY, *scene.words, "--data", data],

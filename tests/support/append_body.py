@@ -1,4 +1,4 @@
-"""Writing events as JSON, also such as the program does not write."""
+"""Writing events as JSON, including events that the program does not write."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ from tangy_profiles.store import Store
 def append_body(
     store: Store, kind: str | type[EventRecord], body: Mapping[str, Any], **row: Any
 ) -> int:
-    """Append an event of a kind by its body; `row` says about whom it is."""
+    """Append an event of a kind by its body; `row` names its person."""
     name = kind if isinstance(kind, str) else kind.KIND
     return store.append(Unknown(name, body), **row)

@@ -1,4 +1,4 @@
-"""Asking for a command at the far end of a link, and answering its question: seen, or blindly."""
+"""Giving a command at the far end of a link, and answering its question: seen, or blindly."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ FROM_HERE = {"SSH_CONNECTION": "", "SSH_TTY": "", "SSH_CLIENT": "", "TMUX": "", 
 
 
 def ask(far: FarTerminal) -> None:
-    """Give a command, and wait for its question; what is remarked on the last step comes first."""
+    """Give a command, and wait for its question, after any remark on the last step."""
     while REMARKED in far.text:
-        far.type("\x1b")  # GNU screen keeps the first one back
+        far.type("\x1b")  # GNU screen holds back the first one
         far.rest()
     far.type("call number\r")
     far.until(lambda: ASKED in far.text)
 
 
 def ask_blindly(far: FarTerminal, key: str, wait: float) -> None:
-    """Give a command, press a key before its question can be seen, and wait for all of it."""
+    """Give a command, press a key before its question is visible, and wait for all output."""
     assert ASKED not in far.text
     far.type("call number\r")
     far.run(wait)
@@ -34,7 +34,7 @@ def ask_blindly(far: FarTerminal, key: str, wait: float) -> None:
 
 
 def steps(far: FarTerminal) -> int:
-    """Read how many steps were shown."""
+    """Return the number of steps on the screen."""
     found = re.search(r"step (\d+)", far.text)
     assert found is not None
     return int(found[1])
@@ -49,14 +49,14 @@ def refuse(far: FarTerminal) -> None:
 
 
 def yes_of(far: FarTerminal) -> str:
-    """Read which key says yes."""
+    """Return the key that says yes."""
     found = re.search(r"(\S) yes, do it", far.text)
     assert found is not None
     return found[1]
 
 
 def blind(far: FarTerminal, key: str, times: int, longest: float, seed: int = 7) -> int:
-    """Count how often a key that was pressed blindly was taken for a yes."""
+    """Count how often a key that was pressed blindly counted as a yes."""
     rng = random.Random(seed)
     taken = 0
     for _ in range(times):
@@ -71,7 +71,7 @@ def blind(far: FarTerminal, key: str, times: int, longest: float, seed: int = 7)
 
 
 def answered(far: FarTerminal, times: int, reading: float) -> int:
-    """Count how often the yes of a question counts so many s after the question was seen."""
+    """Count how often the yes of a question counts some s after the question was visible."""
     taken = 0
     for _ in range(times):
         before = steps(far)

@@ -1,4 +1,4 @@
-"""The activities that ship and are declared by facts."""
+"""The shipped activities that are declared by facts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tangy_profiles.declared.activity import DeclaredActivity
 
 @cache
 def declared(name: str) -> DeclaredActivity:
-    """Return a declared activity that ships, by its name."""
+    """Return a shipped declared activity by its name."""
     activity = load_activity(name)
     assert isinstance(activity, DeclaredActivity)
     return activity
@@ -26,5 +26,5 @@ DECLARED = [
 
 
 def each_of_first(names: Sequence[str]) -> list[Any]:
-    """Return the parameters of a long test: all of them, of which fast runs take the first."""
+    """Return the parameters of a long test: all of them, or the first for fast runs."""
     return [names[0], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]

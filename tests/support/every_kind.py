@@ -1,4 +1,4 @@
-"""A data folder whose log has events of every kind there is, written by the program itself."""
+"""A data folder whose log has events of every kind, written by the program itself."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ from tests.support.append_body import append_body
 
 
 def write_every_kind(folder: Path) -> None:
-    """Add to a folder in which something was learnt what is missing of every kind."""
+    """Add the missing kinds of events to a folder with a learned policy."""
     workspace = Workspace(folder)
     try:
         with workspace.store.transaction():

@@ -1,4 +1,4 @@
-"""The frames that a program writes to a terminal: how many, and which of them change nothing."""
+"""The frames that a program writes to a terminal: their number, and which change nothing."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ class Frames:
 
 
 class FramedTerminal(Terminal):
-    """A terminal that lets the program mark its frames, and takes no notice of a size of its own.
+    """A terminal that supports marked frames, and reports no size of its own.
 
-    `resized` has after how many bytes it had which size.
+    `resized` holds each size with the number of bytes before it.
     """
 
     def read(self, seconds: float) -> bytes:
-        """Read what is written within a time, and answer what the program asks of a terminal."""
+        """Read output for this long, and answer the program's queries."""
         chunk = super().read(seconds)
         if ASKED in chunk:
             self.type(YES)
         return chunk
 
     def watch(self, seconds: float, until: Callable[[], bool] = lambda: False) -> None:
-        """Read for a while, or until something is so."""
+        """Read for a while, or until a condition is true."""
         end = monotonic() + seconds
         while monotonic() < end and not until():
             self.read(0.05)
 
 
 def frames_of(raw: bytes, columns: int, lines: int) -> Frames:
-    """Find the frames in what was written to a terminal of one size."""
+    """Find the frames in the output to a terminal of one size."""
     screen = pyte.Screen(columns, lines)
     stream = pyte.ByteStream(screen)
     before, *rest = raw.split(BEGIN)
@@ -63,6 +63,6 @@ def frames_of(raw: bytes, columns: int, lines: int) -> Frames:
 
 
 def _shown(screen: pyte.Screen) -> object:
-    """Return every cell, and where the cursor is."""
+    """Return every cell, and the cursor's position."""
     cells = [[screen.buffer[y][x] for x in range(screen.columns)] for y in range(screen.lines)]
     return cells, (screen.cursor.x, screen.cursor.y)

@@ -1,4 +1,4 @@
-"""A gallery for developers: every widget and dialog on one screen, with data that tries them.
+"""A gallery for developers: every widget and dialog on one screen, with demanding data.
 
 `python -m tests.support.gallery [--ascii] [--ansi] [--light] [--people N]`
 """
@@ -43,7 +43,7 @@ NARROW_OR_WIDE = [(0, "-narrow"), (120, "-wide")]
 
 @dataclass
 class SampleEars:
-    """A microphone in one of the states that it can be in."""
+    """A microphone in one of its possible states."""
 
     state: str
     words: str = ""
@@ -55,7 +55,7 @@ class SampleEars:
 
     @property
     def meter(self) -> SampleEars:
-        """What has the level."""
+        """The meter of the level."""
         return self
 
 
@@ -169,12 +169,12 @@ class GalleryScreen(TangyScreen[None]):
         self.log_view.write("The camera does not answer. Tangy has stopped.", "bad")
 
     def action_go(self) -> None:
-        """Let the robot walk to the next place."""
+        """Move the robot to the next place."""
         at = self.places.index(self.room_view.scene.place)
         self.room_view.drive(self.places[(at + 1) % len(self.places)], 4.0)
 
     def on_room_view_arrived(self, event: RoomView.Arrived) -> None:
-        """Take note of the place."""
+        """Record the place."""
         scene = self.room_view.scene
         self.room_view.show(
             Scene(event.place, scene.requests, scene.doing, scene.called, scene.card)
@@ -182,7 +182,7 @@ class GalleryScreen(TangyScreen[None]):
         self.log_view.write(f"Tangy is at {event.place}.")
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
-        """Verify whatever was typed."""
+        """Ask whether the typed command is meant."""
         self._ask(event.text)
 
     def action_ask(self) -> None:

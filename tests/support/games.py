@@ -1,4 +1,4 @@
-"""Supervised games: played to their end or to a point, and what came about in them."""
+"""Supervised games: played to their end or to a point, and their events."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def play(game: Supervision, *, expert: bool = True) -> list[Event]:
 def until(
     game: Supervision, stops: Callable[[Supervision], object], most: int = 400
 ) -> list[Event]:
-    """Do step after step until something is so; nobody clears or answers anything."""
+    """Take steps until a condition is true; nobody clears or answers anything."""
     events: list[Event] = []
     for _ in range(most):
         if stops(game):
@@ -40,12 +40,12 @@ def until(
 
 
 def codes(events: list[Event]) -> list[str]:
-    """Return the codes of what was diagnosed, in order."""
+    """Return the codes of the diagnosed faults, in order."""
     return [event.fault.code for event in events if isinstance(event, Diagnosed)]
 
 
 def moves(events: list[Event], code: str = "") -> list[str]:
-    """Return what was done about faults (of a code), in order."""
+    """Return the moves about faults (of a code), in order."""
     return [e.move.kind for e in events if isinstance(e, Moved) and code in ("", e.fault.code)]
 
 
@@ -60,7 +60,7 @@ def ended(events: Sequence[object]) -> GameEnded:
 
 
 def in_vain(events: list[Event]) -> list[tuple[int, str]]:
-    """Return each request that was not followed: in which visit, and by which way of speaking."""
+    """Return the visit and the strategy of each request that was not followed."""
     found: list[tuple[int, str]] = []
     visit = 0
     for event in events:

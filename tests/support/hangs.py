@@ -1,8 +1,8 @@
-"""A test that hangs fails, by its name, and holds up no other.
+"""A test that hangs fails by its name, and holds up no other.
 
-pytest-timeout interrupts a test after the seconds of `timeout` in pyproject.toml, which says where
-it hung. What cannot be interrupted (a thread that is joined, a call that never returns, a clean-up
-that waits) would hold up the whole run even so: there the process is ended `GRACE` seconds later.
+pytest-timeout interrupts a test after the seconds of `timeout` in pyproject.toml, and shows where
+it hung. Some tests cannot be interrupted (a joined thread, a call that never returns, a clean-up
+that waits), and would hold up the whole run. Their process is ended `GRACE` seconds later.
 Its stacks are written, and pytest-xdist names the test and goes on in another process.
 """
 
@@ -29,14 +29,14 @@ _STDERR = pytest.StashKey[int]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Keep the real standard error: while a test runs, what is written there is captured."""
+    """Keep the real standard error: pytest captures the usual one while a test runs."""
     capture = config.pluginmanager.getplugin("capturemanager")
     with capture.global_and_fixture_disabled():
         config.stash[_STDERR] = os.dup(2)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give slow tests the time that they need."""
+    """Give slow tests more time."""
     for item in items:
         if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(SLOW_SECONDS))
@@ -48,7 +48,7 @@ def _end_process_after(item: pytest.Item, seconds: float) -> None:
 
 @pytest.hookimpl(wrapper=True, optionalhook=True)
 def pytest_timeout_set_timer(item: pytest.Item, settings: Any) -> Any:
-    """End the process where interrupting the test does not."""
+    """End the process if interrupting the test does not help."""
     _end_process_after(item, settings.timeout + GRACE)
     done = yield
     if settings.method == "signal" and threading.current_thread() is threading.main_thread():
@@ -58,11 +58,11 @@ def pytest_timeout_set_timer(item: pytest.Item, settings: Any) -> Any:
 
 @pytest.hookimpl(trylast=True)
 def pytest_exception_interact(node: pytest.Item | pytest.Collector) -> None:
-    """Guard the clean-up of a test that failed: pytest and the plugin end their watch with it."""
+    """Guard the clean-up of a failed test: pytest and the plugin end their own timeout with it."""
     if isinstance(node, pytest.Item):
         _end_process_after(node, GRACE)
 
 
 def pytest_runtest_logfinish() -> None:
-    """Let the process live: the test is over."""
+    """Cancel the end of the process: the test is over."""
     faulthandler.cancel_dump_traceback_later()

@@ -1,4 +1,4 @@
-"""How many examples a law is tried with: few in the fast tests, as many as it says at length."""
+"""The number of a law's examples: few in the fast tests, its own number in the slow ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Test = TypeVar("Test", bound=Callable[..., None])
 
 
 def tried(examples: int) -> Callable[[Test], Test]:
-    """Try a law with so many examples at length, and with `FEW` of them in the fast tests."""
+    """Try a law with this many examples in slow tests, and with `FEW` of them in fast tests."""
     at_length = settings.get_current_profile_name() != "tangy"
     count = examples if at_length else min(FEW, examples)
 

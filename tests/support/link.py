@@ -22,7 +22,7 @@ the program, or nothing."""
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What a link does to bytes: s each way, s more at the most, bytes a second."""
+    """The properties of a link: delay and greatest jitter in s, rate in bytes per s."""
 
     delay: float = 0.0
     jitter: float = 0.0
@@ -30,14 +30,14 @@ class Link:
 
 
 class Answering(pyte.Screen):
-    """A screen that reports where its cursor is."""
+    """A screen that reports its cursor's position."""
 
     def __init__(self, columns: int, lines: int, answer: Callable[[str], None]) -> None:
         self._answer = answer
         super().__init__(columns, lines)
 
     def write_process_input(self, data: str) -> None:
-        """Answer."""
+        """Send a reply."""
         self._answer(data)
 
 
@@ -65,18 +65,18 @@ class FarTerminal:
 
     @property
     def text(self) -> str:
-        """What the person can read."""
+        """The text that the person can read."""
         return "\n".join(line.rstrip() for line in self._screen.display)
 
     def type(self, keys: str) -> None:
-        """Send keys on their way."""
+        """Send keys."""
         self._send("in", keys.encode())
 
     def _type_near(self, keys: str) -> None:
         self._terminal.type(keys)
 
     def _send(self, way: str, data: bytes) -> None:
-        """Let data arrive after the link's delay, in the order in which it was sent."""
+        """Let data arrive after the link's delay, in the order of sending."""
         due = monotonic() + self._link.delay + self._random.random() * self._link.jitter
         due = max(due, self._free[way])
         if self._link.rate is not None:
@@ -85,7 +85,7 @@ class FarTerminal:
         heapq.heappush(self._moving, (due, next(self._number), way, data))
 
     def run(self, seconds: float = 0.01) -> None:
-        """Move what is on its way, for a while."""
+        """Transfer data for a while."""
         until = monotonic() + seconds
         while True:
             if chunk := self._terminal.read(0.002):
@@ -104,7 +104,7 @@ class FarTerminal:
                 return
 
     def until(self, found: Callable[[], bool], seconds: float = PATIENCE) -> None:
-        """Run until something is so."""
+        """Run until a condition is true."""
         deadline = monotonic() + seconds
         while not found():
             if monotonic() > deadline:
@@ -112,7 +112,7 @@ class FarTerminal:
             self.run()
 
     def rest(self) -> None:
-        """Run until nothing is on its way, there or back, and nothing more comes."""
+        """Run until no data is on its way, there or back, and no more comes."""
         moved = -1
         while self._moving or moved != self._moved:
             moved = self._moved

@@ -1,4 +1,4 @@
-"""Small pictures and sounds, made where a test needs them."""
+"""Small pictures and sounds for tests."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ RATE = 8_000
 
 
 def make_sound(path: Path, seconds: float = 2.0) -> Path:
-    """Write a WAV file of silence that lasts for so many s."""
+    """Write a WAV file with this many s of silence."""
     with wave.open(str(path), "wb") as file:
         file.setparams((1, 2, RATE, 0, "NONE", ""))
         file.writeframes(bytes(2 * round(RATE * seconds)))

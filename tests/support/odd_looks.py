@@ -1,7 +1,7 @@
-"""Simulated worlds in which a single look is late, misread or not readable now and then.
+"""Simulated worlds in which single looks are sometimes late, misread or unreadable.
 
-It is the eye that is wrong, not the world: the very next look may be right. What is seen of cards
-is odd in `OddCards`, in which each reading of a card is a look; all of the state in `OddStates`.
+The look is wrong, not the world: the next look may be right. In `OddCards`, each reading of a
+card is a look; in `OddStates`, each observation of the whole state.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ ODD = (LATE, MISREAD, UNREADABLE)
 
 
 class OddWorld(FaultyWorld):
-    """What both have in common: how a look is odd, how often, and how often that came about."""
+    """The common part of both: how a look is odd, how often, and the counts."""
 
     def __init__(self, *what: Any, odd: str, share: float, **more: Any) -> None:
-        """Prepare it; `odd` is one of ODD, `share` is of how many looks."""
+        """Prepare it; `odd` is one of ODD, `share` is the share of odd looks."""
         self.odd, self.share = odd, share
         self.looks = self.odd_looks = self.accused = 0
         super().__init__(*what, **more)
         self._by_chance = Random(f"{more['seed']}/looks")
 
     def execute(self, action: Action) -> Outcome:
-        """Carry it out; count who is asked to mend what is right."""
+        """Carry it out; count people who are asked to correct a right card."""
         wrong = action.behaviour.effect == "clear wrong marks"
         player = self.players.get(self.tracker.place)
         if player is not None and (wrong or action.behaviour.effect == "set missing marks"):
@@ -71,7 +71,7 @@ class OddStates(OddWorld):
         return super().begin()
 
     def observe(self) -> ActivityState:
-        """Return what is seen, which now and then is not so, or not so any more."""
+        """Return the observed state, which is sometimes wrong or out of date."""
         state = super().observe()
         if state != self._now_so:
             self._was_so, self._now_so = self._now_so, state
@@ -92,7 +92,7 @@ class OddStates(OddWorld):
 
 
 class StuckCards(OddWorld):
-    """A world in which the card of one person is read as in one state, however it is."""
+    """A world that reads one person's card as in one state, whatever its true state."""
 
     person = "user2"
     stuck = ""

@@ -1,4 +1,4 @@
-"""All processes that a program has started, whatever became of the program itself."""
+"""All processes that a program has started, even after its own end."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LOOK_SECONDS = 0.01
 
 
 class Family:
-    """A program and its children and theirs, known by a mark in their environment."""
+    """A program and its descendants, known by a mark in their environment."""
 
     def __init__(self) -> None:
         self._mark = f"TANGY_TEST_FAMILY={uuid4().hex}"
@@ -22,16 +22,16 @@ class Family:
 
     @property
     def environment(self) -> dict[str, str]:
-        """What a program has to be started with."""
+        """The environment for starting a program."""
         name, _, value = self._mark.partition("=")
         return {name: value}
 
     def there(self) -> dict[int, str]:
-        """Return the command of each that runs now, by its id."""
+        """Return the command of each running process, by its id."""
         found: dict[int, str] = {}
         for folder in Path("/proc").iterdir():
             if folder.name.isdigit():
-                with suppress(OSError):  # it has just ended, or is not ours
+                with suppress(OSError):  # it has just ended, or belongs to another user
                     if self._mark.encode() in (folder / "environ").read_bytes():
                         command = (folder / "cmdline").read_bytes()
                         found[int(folder.name)] = command.replace(b"\0", b" ").decode().strip()
@@ -41,12 +41,12 @@ class Family:
     def seconds_until(
         self, holds: Callable[[dict[int, str]], bool], most: float, meanwhile: Callable[[], object]
     ) -> float:
-        """Look until something holds of those who run; return how long that took, in s.
+        """Wait until a condition holds for the running processes; return how long that took, in s.
 
         Args:
-            holds: what is looked for.
-            most: s after which it is given up.
-            meanwhile: is done between two looks.
+            holds: the condition.
+            most: s until it gives up.
+            meanwhile: called between two checks.
         """
         began = time.monotonic()
         while not holds(self.there()):
@@ -58,7 +58,7 @@ class Family:
 
 
 def runs(pid: int) -> bool:
-    """Say whether a process runs; one that has ended may lie about until somebody looks."""
+    """Return whether a process runs; a process that has ended may remain as a zombie."""
     try:
         os.kill(pid, 0)
         stat = Path(f"/proc/{pid}/stat").read_text()

@@ -16,9 +16,9 @@ from tangy_profiles.declared.model import (
 
 
 def renamed(declaration: Declaration) -> tuple[Declaration, Mapping[str, str]]:
-    """Return an activity with new names of facts, stages and behaviours, and the old for the new.
+    """Return an activity with new names of facts, stages and behaviours, and a map of names.
 
-    Only what is built in, values, and texts stay as they are.
+    Only built-in names, values, and texts keep their words.
     """
     facts = {
         name: name if fact.built_in else f"fact{number}"

@@ -1,4 +1,4 @@
-"""Files of robots that do not have everything."""
+"""Files of robots without some devices."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tangy_profiles.robot import load_robot, shipped_robots
 
 
 def robot_without(folder: Path, *devices: str, drivers: str = "") -> Path:
-    """Write the file of the robot that ships, without some devices; `drivers` are added as TOML."""
+    """Write the shipped robot's file without some devices; `drivers` are added as TOML."""
     top, *entries = load_robot().file.read_text(encoding="utf-8").split("[[devices]]")
     last, rest = entries[-1].split("[[limbs]]", 1)
     entries[-1] = last

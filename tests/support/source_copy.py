@@ -13,7 +13,7 @@ FLOORS = ("tangy_tui", "sim", "hw", "profiles")
 
 
 def copy_sources(to: Path) -> Path:
-    """Copy the sources, what lies beside them, and the contracts; return where they are."""
+    """Copy the sources, their neighbours, and the contracts; return the folder."""
     shutil.copy(HOUSE / "pyproject.toml", to)
     left_out = shutil.ignore_patterns("__pycache__", "*.egg-info")
     for floor in FLOORS:
@@ -42,7 +42,7 @@ def tangy_on(copy: Path, *arguments: object) -> subprocess.CompletedProcess[str]
 
 
 def edit(path: Path, before: str, after: str) -> None:
-    """Put a text into the place of another that stands there once."""
+    """Replace a text that occurs once."""
     text = path.read_text(encoding="utf-8")
     assert text.count(before) == 1, f"{path.name}: {before!r} stands {text.count(before)} times"
     path.write_text(text.replace(before, after), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Games by lines that are read only where Tangy waits, for tests that type."""
+"""Games with typed lines that are read only while Tangy waits."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def play_by_turns(
     demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
     scripted: bool = False,
 ) -> list[str]:
-    """Play games in which these lines are typed; return what was written."""
+    """Play games in which these lines are typed; return the output."""
     written: list[str] = []
     typed = iter(lines)
     control = GameController(supervision, teacher)

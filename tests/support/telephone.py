@@ -1,4 +1,4 @@
-"""A telephone for tests of calls: whom it calls, and what becomes of that, the test says."""
+"""A telephone for tests of calls: the test decides the outcome of a call."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STATION = Contact("Station 2", command=("ring",))
 
 
 class Line:
-    """A line on which people are called; what becomes of a call is said by the test."""
+    """A line for calls to people; the test decides their outcome."""
 
     def __init__(self) -> None:
         self.told: dict[str, Callable[[CallNews], None]] = {}

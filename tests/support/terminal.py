@@ -30,7 +30,7 @@ TANGY = str(Path(sys.executable).parent / "tangy")
 
 
 class Terminal:
-    """A program in a pty, and what can be read on its screen."""
+    """A program in a pty, and the text of its screen."""
 
     def __init__(
         self,
@@ -58,13 +58,13 @@ class Terminal:
         os.close(child)
 
     def resize(self, columns: int, lines: int) -> None:
-        """Make the window larger or smaller."""
+        """Resize the window."""
         size = struct.pack("HHHH", lines, columns, 0, 0)
         fcntl.ioctl(self._parent, termios.TIOCSWINSZ, size)
         self._screen.resize(lines, columns)
 
     def wipe(self) -> None:
-        """Lose what the screen shows, as when something else has written on it."""
+        """Wipe the screen, as if another program had written on it."""
         self._screen.reset()
 
     @property
@@ -74,17 +74,17 @@ class Terminal:
 
     @property
     def text(self) -> str:
-        """What can be read on the screen."""
+        """The readable text of the screen."""
         return "\n".join(line.rstrip() for line in self._screen.display)
 
     @property
     def cells(self) -> list[list[tuple[object, ...]]]:
-        """What can be seen of each cell: its character, colours and attributes."""
+        """The visible part of each cell: its character, colours and attributes."""
         rows, buffer = range(self._screen.lines), self._screen.buffer
         return [[_seen(buffer[y][x]) for x in range(self._screen.columns)] for y in rows]
 
     def read(self, seconds: float) -> bytes:
-        """Read what is written within a time; stops at the first chunk."""
+        """Read output for this long; stops at the first chunk."""
         if not select.select([self._parent], [], [], seconds)[0]:
             return b""
         try:
@@ -108,14 +108,14 @@ class Terminal:
         return self.text
 
     def settle(self, seconds: float = 0.5) -> int:
-        """Read until nothing is written for a while; return how many bytes were."""
+        """Read until output stops for a while; return the number of bytes."""
         count = 0
         while chunk := self.read(seconds):
             count += len(chunk)
         return count
 
     def type(self, keys: str) -> None:
-        """Type."""
+        """Type keys."""
         os.write(self._parent, keys.encode())
 
     def wait(self) -> int:
@@ -128,13 +128,13 @@ class Terminal:
         return self.process.wait(timeout=1)
 
     def close(self) -> None:
-        """Close the window, as a person would who has had enough."""
+        """Close the window, as a person would."""
         if self._parent >= 0:
             os.close(self._parent)
             self._parent = -1
 
     def end(self) -> None:
-        """Clear up, whatever state the program is in."""
+        """Clean up, whatever state the program is in."""
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
@@ -142,7 +142,7 @@ class Terminal:
 
 
 def _seen(cell: pyte.screens.Char) -> tuple[object, ...]:
-    """Return what can be seen of a cell: of a blank one, its background and lines."""
+    """Return the visible part of a cell: of a blank one, its background and lines."""
     if cell.data == " " and not cell.reverse:
         lined = cell.underscore or cell.strikethrough
         return (" ", cell.fg if lined else "", cell.bg, cell.underscore, cell.strikethrough)
@@ -162,7 +162,7 @@ def ended(pid: int) -> bool:
 
 
 class Tmux:
-    """A tmux server of the test's own, with one window."""
+    """A tmux server of one test, with one window."""
 
     def __init__(self, folder: Path, columns: int, lines: int) -> None:
         tmux = shutil.which("tmux")
@@ -174,7 +174,7 @@ class Tmux:
         self._reader = -1
 
     def __call__(self, *words: str) -> str:
-        """Give tmux a command."""
+        """Send tmux a command."""
         done = subprocess.run(  # noqa: S603 - tmux, found on the path
             [*self._tmux, *words], capture_output=True, text=True, check=True
         )
@@ -191,11 +191,11 @@ class Tmux:
 
     @property
     def text(self) -> str:
-        """What can be read in the window."""
+        """The readable text of the window."""
         return self("capture-pane", "-p")
 
     def until(self, seen: str | Callable[[str], bool]) -> str:
-        """Wait until a text can be read in the window, and return what is there."""
+        """Wait until a text is in the window, and return the window's text."""
         found = (lambda text: seen in text) if isinstance(seen, str) else seen
         deadline = monotonic() + PATIENCE
         while not found(text := self.text):

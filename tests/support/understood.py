@@ -1,4 +1,4 @@
-"""What was understood of spoken words."""
+"""The meaning of recognised words."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from tangy_tui.learning.verification import Say, StopCommand
 
 
 def behaviour_of(said: Say | StopCommand) -> str | None:
-    """Return the behaviour that would be asked about; None if none would."""
+    """Return the behaviour that Tangy would ask about; None if there is none."""
     if isinstance(said, StopCommand) or not said.commands or not said.sure:
         return None
     return said.commands[0].behaviour

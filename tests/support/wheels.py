@@ -1,4 +1,4 @@
-"""How fast the bench's wheels turn, as another client of its rosbridge hears it."""
+"""The speed of the bench's wheels, as another client of its rosbridge receives it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LISTENING = 0x0A  # the state of such a socket in /proc/net/tcp
 
 
 class Wheels:
-    """Hears the odometry of the bench."""
+    """Receives the odometry of the bench."""
 
     def __init__(self, link: Connection) -> None:
         self.told: list[tuple[float, float]] = []
@@ -38,16 +38,16 @@ class Wheels:
 
     @property
     def speed(self) -> float:
-        """How fast it drives, in m/s; a turn of a rad/s counts as one."""
+        """Its speed in m/s; a turn of a rad/s counts as one."""
         return self.told[-1][1] if self.told else 0.0
 
     def still_since(self) -> float:
-        """Return when it came to stand, on the monotonic clock."""
+        """Return the time since which it stands, on the monotonic clock."""
         return max((at for at, speed in self.told if speed > 1e-3), default=0.0)
 
 
 def rosbridge(pid: int) -> str:
-    """Return the address of the one of a process's ports that speaks rosbridge."""
+    """Return the address of a process's port that speaks rosbridge."""
     for port in _listens(pid):
         url = f"ws://127.0.0.1:{port}"
         with suppress(WebSocketException, OSError), connect(url, open_timeout=2):
