@@ -180,8 +180,21 @@ class Dialog(ModalScreen[ResultT]):
         self.answer(self._no)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Cover the dialog if the window is too small."""
+        """Cover the dialog if the window is too small, and tell the screen below what it covers."""
         cover_if_small(self)
+        if hasattr(self.below, "covered"):
+            self.call_after_refresh(self._tell_below)
+
+    @property
+    def below(self) -> Screen[Any] | None:
+        """The screen below the dialog."""
+        stack = self.app.screen_stack
+        return stack[stack.index(self) - 1] if self in stack[1:] else None
+
+    def _tell_below(self) -> None:
+        below: Any = self.below
+        for box in self.query(".box"):
+            below.covered(box.region)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Cover the dialog if the window is too small."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from textual.geometry import Region
 from textual.screen import Screen
 from textual.widgets import Static
 
@@ -264,9 +265,19 @@ class TeachingPicture:
         seen = [(activity.in_words(s), found.times[s]) for s in found.seen]
         here = len(self._shown.here().seen)
         self._screen.query_one(CoverageList).show(missing_words(activity, found), seen, here)
-        room = 2 * (self._screen.size.width - 4) - WRAPPING
-        words = unseen_words(activity, found.missing, room)
+        self._unseen(found, 2)
+
+    def _unseen(self, found: Coverage, lines: int) -> None:
+        """Name the missing situations in one or two lines."""
+        room = lines * (self._screen.size.width - 4) - WRAPPING * (lines - 1)
+        words = unseen_words(self._teaching.activity, found.missing, room)
         self._screen.query_one("#unseen", Static).update(words)
+
+    def covered(self, region: Region) -> None:
+        """Keep what is still to show above a dialog that covers a part of it."""
+        unseen = self._screen.query_one("#unseen", Static).region
+        if region.overlaps(unseen) and region.y > unseen.y:
+            self._unseen(self._shown.now(), region.y - unseen.y)
 
     @property
     def _log(self) -> LogView:

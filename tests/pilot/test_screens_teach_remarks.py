@@ -148,3 +148,22 @@ async def test_undo_takes_the_step_of_a_remark_back(
         assert pilot.app.screen is screen
         assert len(screen.teaching.demonstration.steps) == 1
         assert not read_library(workspace.store, "bingo").resolutions
+
+
+@pytest.mark.slow
+async def test_a_long_remark_cuts_no_list_in_the_middle(run: Run, workspace: Workspace) -> None:
+    async with run((80, 24), app=program(workspace)) as pilot:
+        remark = await contradict(pilot)
+        await pilot.pause()
+        box = remark.query_one("#remark").region
+        teach = next(one for one in pilot.app.screen_stack if isinstance(one, TeachScreen))
+        unseen = teach.query_one("#unseen").region
+        assert unseen.y < box.y < unseen.bottom, "the remark covers a part of the list"
+        shown = screen_text(pilot.app).splitlines()[box.y - 1]
+        assert "still to show: " in shown
+        assert shown.rstrip().endswith("more")
+        await pilot.press("escape")
+        await pilot.pause()
+        both = " ".join(screen_text(pilot.app).splitlines()[unseen.y : unseen.bottom])
+        assert "still to show" in both
+        assert len(both.split()) > len(shown.split())

@@ -10,6 +10,7 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
+from textual.geometry import Region
 from textual.screen import Screen
 from textual.widgets import Static
 
@@ -307,6 +308,10 @@ class TeachScreen(TangyScreen[bool]):
         """Show a notice in the log: in a corner it would cover what is still to show."""
         self._log.write(sentence, "dim")
         return True
+
+    def covered(self, region: Region) -> None:
+        """Show what is still to show above a dialog, as far as there is room."""
+        self._picture.covered(region)
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot where it is drawn, until the next command."""
