@@ -69,7 +69,7 @@ def test_all_mistakes_are_reported_at_once_with_place_and_suggestion(folder: Pat
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('is open" },', 'is open", when = ["open is no"] },', "the last stage"),
+        ('next question" },', 'next question", when = ["open is no"] },', "the last stage"),
         ('does = ["finish"]', "does = []", "'finish'"),
         ("{hint}", "{hunt}", "{hunt}"),
         ("repeat question -> first asking", "repeat question -> quietest", "among its 'to'"),
