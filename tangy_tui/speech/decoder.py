@@ -4,10 +4,10 @@ In the usual mode each utterance is decoded twice: by an n-gram model of the phr
 everyday words can occur anywhere, which gives the words; and by a grammar of the phrases with a
 garbage branch of any phones, which shows how well any phones explain the sound. The difference of
 the two scores separates spoken commands from words that merely fit best. Where the words are no
-whole phrase, a model of the ways to ask and of talk gives guesses at the sentence. A separate stop
-decoder (`stop_decoder`) runs first; if it is sure, its result is used at once. The paper's mode has
-only the n-gram model of the phrases. pocketsphinx holds the GIL, so this runs in a process of its
-own: see `worker`.
+whole phrase, apart from fillers, a model of the ways to ask and of talk gives guesses at the
+sentence. A separate stop decoder (`stop_decoder`) runs first; if it is sure, its result is used at
+once. The paper's mode has only the n-gram model of the phrases. pocketsphinx holds the GIL, so this
+runs in a process of its own: see `worker`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
+from tangy_tui.language.words import bare
 from tangy_tui.speech.evidence import RATE, AcousticEvidence, DecoderVocabulary, Expecting
 from tangy_tui.speech.forked_worker import ForkedWorker
 from tangy_tui.speech.language import (
@@ -145,6 +146,7 @@ class TwoDecoders(_Streaming):
                 add_model(self._search, name, open_model(said, open_words, share))
                 self._grammar.add_jsgf_string(name, grammar(said, weight))
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
+        self._bare = {bare(tuple(text.split())) for text in phrases} - {()}
         few = dict(list(open_words.items())[:FEW])
         self._guesses = bool(asked)
         if asked:
@@ -176,8 +178,9 @@ class TwoDecoders(_Streaming):
         pcm, expecting = asked
         self._end()  # not earlier: it takes .06 s, and a child's own search is not open
         words, score, _ = best_path(self._search, pcm, expecting)
-        phrase = not words or expecting != "commands" or words in self._said[expecting]
-        if phrase or not self._guesses:
+        # fillers such as "please" change nothing
+        phrase = not words or bare(tuple(words.split())) in self._bare
+        if phrase or expecting != "commands" or not self._guesses:
             return words, score, ()
         return words, score, likeliest(self._search, pcm, "sentences")
 

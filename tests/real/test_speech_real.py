@@ -182,6 +182,8 @@ class TestVoices:
             assert found.commands[0].behaviour == meant
             assert evidence.words not in evidence.guesses  # only the words were misheard
         assert not decoder.decode(voices.say(*KNOWN[0][:2]), "commands").guesses
+        polite = decoder.decode(voices.say("please tell a joke", "slt"), "commands")
+        assert polite.words == "please tell a joke" and not polite.guesses
         decoder.close()
 
     @pytest.mark.slow
