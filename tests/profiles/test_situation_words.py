@@ -48,6 +48,13 @@ def test_a_stage_is_described_in_the_words_of_its_file() -> None:
     assert trivia.in_names(wrong) == "judge · answer is wrong, hinted is yes"
 
 
+def test_a_stage_of_a_game_of_teams_speaks_of_teams() -> None:
+    teams = declared("team-trivia")
+    assert teams.stage_words("repeat") == "a team asked to hear the question again"
+    assert teams.stage_words("judge") == "the team gave an answer"
+    assert declared("trivia").stage_words("judge") == "the player gave an answer"
+
+
 def test_names_and_conditions_describe_a_stage_without_words(bare: DeclaredActivity) -> None:
     first = situation_of(bare.declaration, "warm_up", ("5-19", "sad", ">=2"))
     told = "warm up (opened is no) · for 5 to 19 s, mood is sad, tries: 2 or more"

@@ -83,7 +83,10 @@ def stage_words(declaration: Declaration, name: str, who: str = "") -> str:
     stage = next((one for one in declaration.stages if one.name == name), None)
     if stage is None:
         return name
-    return (stage.words or _by_name(stage)).replace(NAME, who or ANYONE.get(stage.about, A_PERSON))
+    anyone = ANYONE.get(stage.about, A_PERSON)
+    if declaration.teams:
+        anyone = anyone.replace("person", "team").replace("player", "team")
+    return (stage.words or _by_name(stage)).replace(NAME, who or anyone)
 
 
 def value_words(fact: Fact, value: str) -> str:
