@@ -25,6 +25,7 @@ from tangy_tui.language.steering import (
     steering_of,
     steering_texts,
 )
+from tangy_tui.language.stop_patterns import CRIES
 from tangy_tui.language.stop_phrases import other_stop_texts, stop_texts
 from tangy_tui.language.stop_sentence import STOPS, stops, stops_by_rules
 from tangy_tui.language.words import clean
@@ -230,15 +231,16 @@ def replied(
     words of the alternatives, and `people` the possible answers of people in a game, by spoken
     form; `options` are those of the question that people are asked now.
 
-    Words that are hardly more than one of these options stop the robot by the rules alone: what
-    was learnt of stops takes short answers for them.
+    Words that are hardly more than one of these options, without a verb of stopping, stop the robot
+    by the rules alone: what was learnt of stops takes short answers for them.
     """
     given = answered(evidence, settings, people) if answers else None
     if given is not None and given.confidence >= BOTH_HEARD:
         evidence = replace(evidence, stop="")  # both other decoders hear an answer
     open_now = (said for said, text in people.items() if text in options)
     offered = any(_is_hardly_more(evidence.words, said) for said in open_now)
-    if offered and not stops_by_rules(evidence.stop):
+    cries = not CRIES.isdisjoint(f"{evidence.words} {evidence.stop}".split())
+    if offered and not cries and not stops_by_rules(evidence.stop):
         evidence = replace(evidence, stop="")
     said = answer(evidence, settings, choices)
     if not isinstance(said, StopCommand) and _steers(evidence.words, evidence, settings, steering):

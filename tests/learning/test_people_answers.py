@@ -135,6 +135,7 @@ def test_the_vocabulary_includes_answers_but_no_single_letters() -> None:
         ("the crow", "the crow", ("the dove",), True),  # that is not asked now
         ("the crow", "the crow", (), True),  # no question is open
         ("let go of the dove now", "let go of the dove now", ("the dove",), True),
+        ("stop the dove", "stop the now", ("the dove",), True),  # perhaps: stop it now
         ("stop the dove", "stop it", ("the dove",), True),  # clearly a stop
     ],
 )
