@@ -32,7 +32,7 @@ def put(folder: Path, text: str) -> Path:
 
 
 def as_before(activity: Activity) -> Activity:
-    """Leave out where the activity was read, and whether its file names the defaults."""
+    """Leave out the activity's path, and whether its file names the defaults."""
     asking = replace(activity.asking, named=False)
     return replace(activity, source="", names_pressing=False, asking=asking)
 

@@ -106,7 +106,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
                                       "Rosa: B", "drive left", "pace 9", "bingo 1", "play for x",
                                       "here rosa", "left rosa", "add Berta")
     }  # fmt: skip
-    assert typed == set(get_args(GameCommand)) - {Confirm}  # which is answered by Y or N
+    assert typed == set(get_args(GameCommand)) - {Confirm}  # Confirm has the keys Y and N
     helped = " ".join(key for key, _ in MEANINGS)
     assert all(word in helped for word in ("stop", "pause", "take over", "ask for", "void", "end"))
 

@@ -1,4 +1,4 @@
-"""Commands that cannot be undone ask a person who types, and ask a script nothing."""
+"""Commands that cannot be undone ask a person who types for confirmation, but not a script."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PATIENCE = 20.0  # s
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
@@ -49,13 +49,13 @@ def call_once(control: GameController) -> None:
 
 
 class Typist:
-    """Types each line after some words were written."""
+    """Types each line after certain words were written."""
 
     def __init__(self, *lines: tuple[str, str]) -> None:
         self.written: list[str] = []
         self._lines = iter(lines)
         self._came = threading.Condition()
-        self._read = 0  # lines written before the last one was typed
+        self._read = 0  # number of lines written before the last typed one
 
     def write(self, line: str) -> None:
         with self._came:
@@ -76,7 +76,7 @@ class Typist:
         return line
 
     def plays(self, workspace: Workspace, *, typed: bool = True) -> str:
-        """Play a game; return what was written."""
+        """Play a game; return the output."""
         learnt, _ = load_policy(workspace.store, workspace.activity)
         ticks = count()  # so that no answer is faster than a person
         yes = TypedYes(
@@ -141,7 +141,7 @@ def test_nothing_is_done_while_a_question_is_open(control: GameController) -> No
 
 def test_a_call_is_named_by_the_question(control: GameController) -> None:
     assert needed_confirmation(TakeBackCall(), control) is None
-    refused = control.refuses(TakeBackCall())  # or it would take back the call being spoken
+    refused = control.refuses(TakeBackCall())  # it would take back the call being spoken
     assert refused is not None and refused.kind == "nothing called"
     call_once(control)
     label = control.supervision.world.activity.deck.label(called(control)[-1])

@@ -13,7 +13,7 @@ from tangy_tui.text.teaching import teaching_lines
 
 
 def do(teaching: TeachingSession, *phrases: str) -> list[Contradicted]:
-    """Give commands, say yes to each, and return the contradictions that were told."""
+    """Give commands, say yes to each, and return the reported contradictions."""
     events: list[TeachingEvent] = []
     for phrase in phrases:
         teaching.apply(Say(phrase))

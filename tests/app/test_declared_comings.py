@@ -1,4 +1,4 @@
-"""People and teams leave and return in games by facts at the command of staff."""
+"""Staff report that people and teams leave and return in games declared by facts."""
 
 from __future__ import annotations
 

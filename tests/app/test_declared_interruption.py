@@ -40,14 +40,14 @@ def live(name: str) -> DeclaredLiveWorld:
 
 
 def past_of(name: str, steps: list[GameStep]) -> PastGame:
-    """Return the game as it is read from the log."""
+    """Return the game as read from the log."""
     beginning = GameBeginning(game="g", number=1, activity=name, people=PEOPLE, world=LIVE)
     logged = tuple(decode(GameStep, encode(step)) for step in steps)
     return PastGame(beginning, datetime.now(UTC), logged)
 
 
 def play(world: DeclaredWorld | DeclaredLiveWorld, steps: int, since: int = 0) -> list[GameStep]:
-    """Play by what the activity expects, so many steps, and return what is logged of them."""
+    """Play this many expected steps, and return their log entries."""
     done: list[GameStep] = []
     while not world.over and len(done) < steps:
         state, activity = world.observe(), world.activity

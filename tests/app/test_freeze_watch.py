@@ -46,7 +46,7 @@ def test_short_gaps_and_busy_times_are_no_freeze(seconds: float, worked: float) 
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 

@@ -73,7 +73,7 @@ class Played:
         return str(self.control.phase)
 
     def next(self) -> list[str]:
-        """Do the next thing; return the behaviours that were done."""
+        """Take the next step; return the executed behaviours."""
         return [e.action.behaviour.name for e in self.control.next() if isinstance(e, Acted)]
 
     def logged(self) -> list[tuple[str, str]]:
@@ -121,7 +121,7 @@ def test_a_stop_reaches_the_robot_during_a_behaviour(live: Played) -> None:
     game = threading.Thread(target=live.control.next)
     game.start()
     assert doing.wait(20)
-    assert kinds(live.control.apply(StopRobot())) == ["stopped"]  # the game still has its turn
+    assert kinds(live.control.apply(StopRobot())) == ["stopped"]  # the step itself is still due
     assert live.link.told[-1] == "stop: staff stopped it" and live.phase == "stopped"
     goes_on.set()
     game.join(20)
@@ -143,7 +143,7 @@ def test_a_behaviour_interrupted_by_a_stop_is_no_fault_and_no_refusal(live: Play
             live.control.apply(StopRobot())
 
     live.link.meanwhile = meanwhile
-    live.link.missed = {"user2"}  # it was stopped on its way
+    live.link.missed = {"user2"}  # the drive was stopped on its way
     told = [one for _ in range(3) for one in live.control.next()]
     assert any(isinstance(one, Acted) and not one.outcome.completed for one in told)
     assert live.phase == "stopped" and not live.control.supervision.faults

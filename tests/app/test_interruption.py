@@ -85,7 +85,7 @@ class Interrupted:
 
     @property
     def standing(self) -> tuple[ActivityState, tuple[int, ...], tuple[str, ...], Beliefs]:
-        """Where the game is: its state, the numbers called, who asks, what is believed."""
+        """The game's position: its state, called numbers, requests and beliefs."""
         scene = self.supervision.world.scene()
         believed = {
             f"{person}: {strategy}": belief
@@ -127,7 +127,7 @@ def test_a_resumed_game_keeps_the_order_of_its_numbers(room: Interrupted) -> Non
     while not room.supervision.over:
         go_on_by_script(control, expert=False)
     called = room.supervision.world.scene().called
-    shorter = min(len(called), len(whole))  # it may be won sooner: people are asked otherwise
+    shorter = min(len(called), len(whole))  # it may be won sooner, as people get other requests
     assert called[:shorter] == whole[:shorter] and shorter > 12
 
 
@@ -251,7 +251,7 @@ def test_a_new_person_joins_a_resumed_live_game(taught: Path) -> None:
     before.control.apply(AskFor("user3"))
     before.next(1)
     called, asking = tuple(before.world.called), before.world.scene().requests
-    archive_person(workspace.store, "user2")  # who is at the table still
+    archive_person(workspace.store, "user2")  # a person who still sits at the table
     let_join(workspace, "Zelda")
     workspace.close()
     for _ in range(2):  # and once more
@@ -308,7 +308,7 @@ def test_the_clock_of_a_resumed_live_game_counts_only_played_time(
     assert past is not None and past.seconds == pytest.approx(played) and played > 300
     assert sum(step.seconds or 0.0 for step in past.steps) < 300
 
-    after = Robot(workspace, past, on_for=7200.0)  # a robot has a clock of its own
+    after = Robot(workspace, past, on_for=7200.0)  # a robot has its own clock
     watch = StaffWatch()
     watch.resume(after.world.seconds, past, workspace.activity)
     shown = watch.look(after.world.scene(), after.world.people, after.world.seconds, after.world)

@@ -104,10 +104,10 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     assert before.control.supervision.over
     assert "when the game goes on" in before.says(Joins("Carl"))
     do, what = before.link.done[-1]
-    assert do == "go" and what["name"] == FRONT  # where the robot process starts anew
+    assert do == "go" and what["name"] == FRONT  # where the robot process begins
     past = resume_joined(workspace, LIVE)
     after = LiveGame(workspace, past, goes_on=before.control.goes_on)
-    assert after.control.phase == "running"  # nobody has to say that it goes on
+    assert after.control.phase == "running"  # it goes on without a command
     assert after.world.people == ("user1", "user2", "user3", "user4", "user5")
     assert tuple(after.world.called) == called and after.world.scene().requests == asking
     after.control.apply(AskFor("user5"))
@@ -130,7 +130,7 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     page, lines = session_page(session), list(session_lines(session))
     for done in ("came", "left"):
         assert any(f"Ada: Berta {done}" in line for line in lines) and f"Berta {done}" in page
-    # the crash interrupted the game, and not the join
+    # the crash interrupted the game, not the join
     assert sum("after an interruption" in line for line in lines) == 1
     joined = [e.record for e in workspace.store.events(GameChange) if e.record.what == "joined"]
     assert [(one.person, one.by) for one in joined] == [("user5", "Ada")]
@@ -199,7 +199,7 @@ def test_a_person_who_joins_gets_an_id_of_their_own(taught: Path) -> None:
 def test_a_refused_name_leaves_the_group_as_it_was(taught: Path) -> None:
     workspace = Workspace(taught, users=2)
     people = workspace.names
-    workspace.store.rename("user4", "Berta")  # who does not play today
+    workspace.store.rename("user4", "Berta")  # she does not play today
     game = LiveGame(workspace)
     game.play(3)
     assert game.told(Joins("Berta")).kind == "cannot"

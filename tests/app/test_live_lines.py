@@ -1,4 +1,4 @@
-"""Live games by lines that a person joins: what is told if the robot does not come on again."""
+"""Live games by lines that a person joins: the message if the robot does not come on again."""
 
 from __future__ import annotations
 

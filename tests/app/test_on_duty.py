@@ -1,4 +1,4 @@
-"""Who is on duty: the name in the log and in reports for what staff do in live games."""
+"""The person on duty: the name in the log and in reports for actions of staff in live games."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.app.test_joining import LiveGame
 
 def test_the_name_is_kept_for_the_next_session(tmp_path: Path) -> None:
     change_name(tmp_path, "Rosa")
-    assert on_duty(tmp_path) == "Rosa"  # until somebody else is
+    assert on_duty(tmp_path) == "Rosa"  # until the next person is
     take_duty(tmp_path, " Nina ")
     assert on_duty(tmp_path) == "Nina"
     with pytest.raises(TangyError):

@@ -95,7 +95,7 @@ def test_a_game_continues_for_each_chosen_pattern(planned: Planned) -> None:
     ended = planned.events[-1]
     assert isinstance(ended, GameEnded) and ended.stopped is None
     assert planned.changes().count("played on") == 2 and len(planned.celebrated()) == 3
-    assert len(planned.world.called_now) > 55  # no card is full much sooner
+    assert len(planned.world.called_now) > 55  # no card is full much earlier
     assert planned.supervision.faults == []
 
 
@@ -106,7 +106,7 @@ def test_each_of_several_winners_is_celebrated(planned: Planned) -> None:
         planned.events += go_on_by_script(planned.control, expert=True)
     first = world.tracker.place
     second = next(person for person in world.people if person != first)
-    world.vouched |= {second}  # whose card wins at the same call
+    world.vouched |= {second}  # their card wins at the same call
     world.tracker.ask(second)
     planned.play()
     assert planned.celebrated()[:2] == [first, second] and planned.supervision.faults == []
@@ -441,7 +441,7 @@ def test_a_default_plan_logs_no_changes_of_the_game(planned: Planned) -> None:
 
 
 def all_called(planned: Planned) -> SimulatedWorld:
-    """Play until all numbers were called: nobody marks anything, and nobody asks."""
+    """Play until all numbers were called: nobody marks a number, and nobody asks."""
     planned.world.users = replace(planned.world.users, miss=1.0, ask=1e-9)
     planned.begin(GamePlan())
     planned.play(calls=75)
@@ -449,7 +449,7 @@ def all_called(planned: Planned) -> SimulatedWorld:
 
 
 def visits(planned: Planned) -> list[str]:
-    """Return who got a visit after the last number."""
+    """Return the people visited after the last number."""
     told = [event for event in planned.events if isinstance(event, GameChanged)]
     last = next(n for n, event in enumerate(told) if event.what == "all called")
     return [event.person for event in told[last:] if event.what == "visit"]
@@ -458,7 +458,7 @@ def visits(planned: Planned) -> list[str]:
 def test_every_card_is_checked_after_the_last_number(planned: Planned) -> None:
     world = all_called(planned)
     planned.play()
-    assert visits(planned) == [world.people[0]]  # who marks what was missed, and wins
+    assert visits(planned) == [world.people[0]]  # they mark the missed number, and win
     assert planned.celebrated() == [world.people[0]] and planned.supervision.faults == []
     ended = planned.events[-1]
     assert isinstance(ended, GameEnded) and ended.stopped is None
@@ -543,7 +543,7 @@ def test_each_pattern_has_one_winner_by_default(planned: Planned) -> None:
     planned.play(calls=75)
     planned.play()
     assert planned.celebrated() == list(planned.world.people[:1]) * 3
-    assert visits(planned) == list(planned.world.people[:1]) * 3  # for each pattern anew
+    assert visits(planned) == list(planned.world.people[:1]) * 3  # again for each pattern
     change = GameChanged("nobody won", "", 2, (), "")
     assert "nobody else has won" in changed_words(change, None, str)
 

@@ -103,7 +103,7 @@ def test_a_game_is_set_up_by_lines(data_folder: Path) -> None:
 def test_a_change_prints_only_its_own_lines(data_folder: Path) -> None:
     workspace = Workspace(data_folder)
     setup, said = SetUp.of(workspace), list[str]()
-    everything = len(text.lines_of(setup)) + 1  # and the help
+    everything = len(text.lines_of(setup)) + 1  # and one line of help
     told, lines = list[list[str]](), iter(("left User 3", "left User 3", "show", "begin"))
 
     def read() -> str:
@@ -191,7 +191,7 @@ def test_a_guest_is_forgotten_after_the_day(data_folder: Path) -> None:
     workspace.close()
 
     again = Workspace(data_folder, now=lambda: now[0])
-    assert list(again.names)[-1] == guest  # as a game that was interrupted needs
+    assert list(again.names)[-1] == guest  # an interrupted game needs them
     again.close()
 
     now[0] += timedelta(days=1)

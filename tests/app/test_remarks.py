@@ -91,7 +91,7 @@ def until(teaching: TeachingSession, stage: str) -> None:
 
 
 def unasked(teaching: TeachingSession) -> str:
-    """Return the phrase that goes to somebody who does not ask."""
+    """Return the phrase for a person who does not ask."""
     users = teaching.world.observe().users
     number = next(n for n, user in enumerate(users, 1) if user.request == "ANR")
     return f"go to user {number}"
@@ -318,7 +318,7 @@ def test_waiting_for_people_as_the_file_of_the_activity_says_is_no_useless_step(
 def test_a_faultless_teacher_of_a_shipped_activity_gets_no_remark(
     tmp_path: Path, name: str, guided: bool
 ) -> None:
-    led: list[Progress] = []  # also where the file expects the step, which explains it
+    led: list[Progress] = []  # also where the file itself expects the step
 
     def judged(before: ActivityState, outcome: Outcome, after: ActivityState) -> Progress:
         led.append("on" if outcome.response else progress(before, outcome, after))
@@ -359,7 +359,7 @@ def test_a_faultless_teacher_of_another_activity_gets_no_remark(tmp_path: Path) 
 
 
 def contradict(workspace: Workspace) -> TeachingSession:
-    """Let Bea show something else than Ada did."""
+    """Let Bea show another behaviour than Ada did."""
     do(session(workspace, "Ada"), "greet everyone", "call number")
     teaching = session(workspace, "Bea", 2)
     assert do(teaching, "greet everyone", "tell a joke")

@@ -29,13 +29,13 @@ from tests.support.waiting import wait_until
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
 @pytest.fixture
 def control(workspace: Workspace, learnt: Policy) -> Iterator[GameController]:
-    """A game that others can look on at, after five steps."""
+    """A game after five steps that other consoles may watch."""
     control = scripted_controller(workspace.supervision(learnt, 5))
     control.begin()
     while control.supervision.steps < 5:
@@ -47,7 +47,7 @@ def control(workspace: Workspace, learnt: Policy) -> Iterator[GameController]:
 
 @pytest.fixture
 def guest(control: GameController, data_folder: Path) -> Iterator[Guest]:
-    """Somebody who looks on."""
+    """A console that watches."""
     guest = Guest(data_folder)
     yield guest
     guest.close()

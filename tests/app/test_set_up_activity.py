@@ -1,4 +1,4 @@
-"""Another activity in the set-up keeps the choices that it has, and tells which it does not."""
+"""Another activity in the setup keeps the choices that it offers, and reports the others."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def data_folder(_each_taught: Path) -> Path:
 
 @pytest.fixture
 def setup(workspace: Workspace) -> SetUp:
-    """A set-up for Bingo."""
+    """A setup for Bingo."""
     workspace.change_activity("bingo")
     return SetUp.of(workspace)
 

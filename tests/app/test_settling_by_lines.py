@@ -1,4 +1,4 @@
-"""Conflicts between demonstrations are settled by lines, where Tangy learns."""
+"""Conflicts between demonstrations are settled by lines when Tangy learns."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def disagreeing(workspace: Workspace) -> Workspace:
 
 
 def settled(workspace: Workspace, *lines: str) -> list[str]:
-    """Settle conflicts with these lines; return what was written."""
+    """Settle conflicts with these lines; return the output."""
     typed, written = iter(lines), list[str]()
     settle_conflicts(workspace, lambda: next(typed, None), written.append)
     return written

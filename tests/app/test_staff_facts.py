@@ -1,4 +1,4 @@
-"""What staff read of each person in a game declared by facts."""
+"""The facts that staff read about each person in a game declared by facts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PEOPLE = ("ann", "ben")
 
 
 class Game:
-    """A world with a game, as far as staff see it."""
+    """A world with the part of a game that staff see."""
 
     def __init__(self) -> None:
         self.activity = declared("trivia")

@@ -24,7 +24,7 @@ LAST = "# the last line"
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
@@ -35,14 +35,14 @@ def told(
     speed: float = 1000,
     after: threading.Event | None = None,
 ) -> tuple[list[str], bool]:
-    """Play a game in which these lines are typed; return what was written, and how it ended.
+    """Play a game in which these lines are typed; return the output and the game's end.
 
     Args:
-        workspace: whose policy plays.
-        lines: are typed at once, from the beginning, or `after` something.
+        workspace: holds the policy.
+        lines: typed at once, from the beginning, or `after` certain words.
         inject: faults.
-        speed: times life.
-        after: what the first line waits for.
+        speed: as a multiple of real time.
+        after: the words that the first line waits for.
     """
     learnt, _ = load_policy(workspace.store, workspace.activity)
     supervision = workspace.supervision(learnt, 4, asks=True, injections=inject)
@@ -101,7 +101,7 @@ def test_staff_pause_stop_resume_take_over_and_end_by_lines(workspace: Workspace
         workspace, "pause", "where", "go on", "wait until called", "Stop it!", "go on",
         "take over", "wait until asked", "tell a joke", "y", "end", speed=100,
     )  # fmt: skip
-    assert ended  # staff wanted it so
+    assert ended  # staff ended it on purpose
     text = "\n".join(written)
     for words in (
         "Paused: ", "(paused)", "STOP: Tangy stands still.", "Tangy goes on.",

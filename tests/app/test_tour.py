@@ -74,7 +74,7 @@ def test_a_skipped_tour_never_resumes(workspace: Workspace) -> None:
 def test_the_words_of_each_stop_fit_into_two_lines() -> None:
     for stop in TourStop:
         words = tour_words(stop, "Rosa-Maria", "Bingo", "greet everyone")
-        assert len(words) < 2 * 78 - 14, stop  # breaking at spaces costs some
+        assert len(words) < 2 * 78 - 14, stop  # breaks at spaces cost some columns
         assert tour_line(stop, "Rosa", "Bingo", "greet everyone")
 
 

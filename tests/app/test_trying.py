@@ -1,4 +1,4 @@
-"""A trial game lists all that people did after each step, and who stayed silent."""
+"""A trial game lists people's actions after each step, and who stayed silent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lines that are typed while the program writes: both can be read."""
+"""Lines that are typed while the program writes: both are readable."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COLUMNS = 20
 
 
 class Desk:
-    """A terminal at which somebody types, and its screen."""
+    """A terminal with a person who types, and its screen."""
 
     def __init__(self, *, dumb: bool = False) -> None:
         self.parent, self.child = pty.openpty()
@@ -33,7 +33,7 @@ class Desk:
         self._stream.feed(text)
 
     def flush(self) -> None:
-        """Nothing is kept."""
+        """Do nothing, as there is no buffer."""
 
     def print_line(self, line: str) -> None:
         self.write(f"{line}\n")
@@ -150,5 +150,5 @@ def test_the_terminal_is_given_back_as_it_was() -> None:
     assert not termios.tcgetattr(desk.child)[3] & termios.ECHO
     desk.lines.restore()
     assert termios.tcgetattr(desk.child) == before
-    desk.lines.prepare()  # as a thread does that still reads lines
+    desk.lines.prepare()  # as in a thread that still reads lines
     assert termios.tcgetattr(desk.child) == before
