@@ -58,7 +58,7 @@ def mistakes(folder: Path, text: str) -> list[str]:
 
 
 def with_phrases(*phrases: tuple[str, str]) -> str:
-    """Return what ships with more phrases, each before one that stands there."""
+    """Return a shipped activity with more phrases, each before an existing one."""
     text = SHIPPED
     for before, more in phrases:
         assert f'"{before}", ' in text
@@ -66,7 +66,7 @@ def with_phrases(*phrases: tuple[str, str]) -> str:
     return text
 
 
-@pytest.mark.slow  # every activity is searched whole, as tests/profiles does one by one
+@pytest.mark.slow  # it searches every activity completely, as tests/profiles does one by one
 def test_every_shipped_file_passes_the_check(tangy: Tangy) -> None:
     done = tangy("activity", "check", "--json")
     assert (done.returncode, done.stderr) == (0, "")

@@ -1,4 +1,4 @@
-"""Every declared activity that ships is taught by demonstration, and then played to its end."""
+"""Every shipped declared activity is taught by demonstration, and then played to its end."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_each_shipped_activity_is_taught_and_plays_100_games(
     learnt = json.loads(tangy("policy", "--json", *options).stdout)
     assert (learnt["searched"]["whole"], learnt["searched"]["asks"]) == (True, [])
     assert all(one["states"] > 0 for one in learnt["searched"]["sizes"])
-    said = " ".join(tangy("policy", *options).stdout.split())  # lines break where they are full
+    said = " ".join(tangy("policy", *options).stdout.split())  # lines wrap at the terminal's width
     assert "each was shown" in said
     played = tangy("play", "--games", 100, "--headless", "--json", "--seed", 7, *options)
     document = json.loads(played.stdout)

@@ -122,7 +122,7 @@ def test_every_package_is_marked_as_typed() -> None:
 
 
 def test_no_handler_calls_the_one_that_it_overrides() -> None:
-    # Textual calls the handlers of all base classes itself: each would be run twice.
+    # Textual calls the handlers of all base classes itself, so each would run twice.
     twice = [
         f"{path.name}:{call.lineno} {call.func.attr}"
         for path in sorted((ROOT / "tangy_tui" / "ui").rglob("*.py"))
@@ -130,7 +130,7 @@ def test_no_handler_calls_the_one_that_it_overrides() -> None:
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Attribute)
         and call.func.attr.startswith("on_")
-        and call.func.attr != "on_event"  # the door for all events, which Textual calls once
+        and call.func.attr != "on_event"  # Textual calls the handler of all events only once
         and isinstance(call.func.value, ast.Call)
         and isinstance(call.func.value.func, ast.Name)
         and call.func.value.func.id == "super"
@@ -148,12 +148,12 @@ def test_no_two_public_classes_share_a_name() -> None:
 
 
 def test_no_module_is_longer_than_400_lines() -> None:
-    # by path: modules of one name stand in several rooms
+    # by path: several folders have modules of the same name
     long = {str(path): path.read_text(encoding="utf-8").count("\n") for path in SOURCES}
     assert {name: lines for name, lines in long.items() if lines > 400} == {}
 
 
 def test_each_test_file_has_a_unique_name() -> None:
-    # pytest imports them by name alone: of two that are called the same, one is not collected.
+    # pytest imports them by name alone: of two files with one name, it would miss one.
     names = sorted(path.name for path in (ROOT / "tests").rglob("test_*.py"))
     assert [name for name, after in pairwise(names) if name == after] == []

@@ -17,7 +17,7 @@ def drawn(body: BodyProfile) -> list[str]:
 
 
 def place(rows: list[str], sign: str) -> tuple[int, int]:
-    """Return row and column of a sign that is drawn once."""
+    """Return row and column of a character that is drawn once."""
     (found,) = ((n, row.index(sign)) for n, row in enumerate(rows) if sign in row)
     return found
 

@@ -1,4 +1,4 @@
-"""A command beside a running game tells who runs it, in words."""
+"""A command beside a running game reports its process, in words."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tangy_tui.verbs.opening import open_workspace
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 

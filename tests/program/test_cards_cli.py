@@ -54,7 +54,7 @@ def test_a_deck_is_determined_by_its_seed(activity: Activity, lanterns: Activity
     assert numbers_of(activity.deck, 1) == (
         *(2, 30, 42, 52, 67, 11, 22, 39, 59, 61, 8, 28, 37, 49, 71),
         *(10, 16, 44, 53, 65, 15, 19, 45, 50, 73),
-    )  # printed cards are in people's hands: they may not change
+    )  # people have printed cards, so they must not change
     assert CardLayout(lanterns.deck).grid.right <= WIDTH
 
 

@@ -157,7 +157,7 @@ def test_why_accepts_numbers_and_words_and_prints_json(tangy: Tangy, taught: Pat
 
 @pytest.fixture
 def untaught(tangy: Tangy, disagreeing: Path) -> Path:
-    """Data from which only the opening of a game was learnt, and that is contested."""
+    """Data with a policy for the opening of a game only, and that is contested."""
     document(tangy("learn", "--unfinished", "--json", "--data", disagreeing))
     return disagreeing
 
@@ -209,7 +209,7 @@ def test_a_teacher_answers_by_lines_and_each_answer_is_verified(
     assert "Tangy has learnt that from Ada" in told
     assert "nothing else changed. One earlier step said otherwise, and is set aside." in told
     assert told.count("Tangy has learnt that from Ada") == 2
-    assert "The game stopped after" in told  # the lines came to an end
+    assert "The game stopped after" in told  # the input ended
     rows = document(tangy("demonstrations", "list", "--json", "--data", untaught))
     assert [r["teacher"] for r in rows] == ["Ada", "Bea", "Ada", "Ada"]
     assert document(tangy("demonstrations", "conflicts", "--json", "--data", untaught)) == []

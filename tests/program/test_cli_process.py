@@ -96,7 +96,7 @@ def test_a_reader_that_closes_early_is_no_error(tmp_path: Path) -> None:
 
 @contextmanager
 def greeting(data: list[str], until: bytes) -> Iterator[subprocess.Popen[bytes]]:
-    """Teach by lines in another process, which has greeted everyone and said something."""
+    """Teach by lines in another process, which has greeted everyone and given its first output."""
     with subprocess.Popen(  # noqa: S603 - our own interpreter
         [*TANGY, "teach", "--plain", *data], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as taught:
@@ -126,7 +126,7 @@ def test_a_killed_writer_releases_the_folder(tmp_path: Path) -> None:
 def test_ctrl_c_ends_a_session_by_lines_and_keeps_its_steps(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
     with greeting(data, b"Now: Nobody asks") as taught:
-        sleep(0.5)  # until the next line is waited for
+        sleep(0.5)  # until it waits for the next line
         taught.send_signal(signal.SIGINT)
         try:
             assert taught.wait(3) == 130

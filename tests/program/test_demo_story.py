@@ -23,7 +23,7 @@ MINUTES = (2, 5)
 
 @cache
 def told() -> tuple[tuple[StoryFrame, ...], list[object], dict[str, str]]:
-    """Tell the story once: its frames, the faults in its log, and for whom its steps were."""
+    """Tell the story once: its frames, the faults in its log, and the people of its steps."""
     with TemporaryDirectory() as folder, closing(Workspace(Path(folder))) as workspace:
         frames = tuple(Story(workspace, 1).frames())
         (shown,) = read_demonstrations(workspace.store, "bingo")

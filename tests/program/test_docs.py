@@ -23,7 +23,7 @@ HOLES = re.compile(r"^[A-Z][A-Z.*@,]*$|^\.\.\.$")
 
 
 def anchors(page: Path) -> set[str]:
-    """Return what can be linked to in a page, as GitHub names headings."""
+    """Return a page's anchors, as GitHub names headings."""
     titles = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", title).strip().lower().replace(" ", "-") for title in titles}
 
@@ -104,7 +104,7 @@ HERE = {str(path.relative_to(HOUSE)) for path in HOUSE.rglob("*.*") if ".venv" n
 @pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
 def test_every_file_named_for_contributors_exists(page: str) -> None:
     text = (HOUSE / page).read_text(encoding="utf-8")
-    named = set(MODULE.findall(text)) - {"lotto.toml"}  # of a package of others
+    named = set(MODULE.findall(text)) - {"lotto.toml"}  # of another package
     assert named
     missing = {one for one in named if not any(f"/{path}".endswith(f"/{one}") for path in HERE)}
     assert missing == set()

@@ -40,7 +40,7 @@ def functions(source: Path) -> Iterator[tuple[Function, str]]:
 
 
 def types(function: Function) -> list[str]:
-    """Return the types that a function takes and returns, but for functions."""
+    """Return the types that a function takes and returns, except functions."""
     taken = [one.annotation for one in (*function.args.args, *function.args.kwonlyargs)]
     told = [ast.unparse(one) for one in (*taken, function.returns) if one is not None]
     return [one for one in told if "Callable" not in one]

@@ -193,7 +193,7 @@ def test_a_requested_broken_part_sets_the_exit_status(
 ) -> None:
     data = ("--data", tmp_path / "data")
     assert tangy("doctor", *data).returncode == 0, "what is missing, Tangy does without"
-    with socket.socket() as closed:  # bound and never listening: nobody else can take the port
+    with socket.socket() as closed:  # bound, but not listening: nobody else can take the port
         closed.bind(("127.0.0.1", 0))
         shipped = load_robot().file.read_text(encoding="utf-8")
         laser = f'laser = {{ kind = "scip", at = "tcp://127.0.0.1:{closed.getsockname()[1]}" }}'

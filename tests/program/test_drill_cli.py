@@ -23,7 +23,7 @@ KEYS = "0\n1\n"
 
 
 def answers(rounds: int) -> str:
-    """Return enough lines for any drill: what is no answer is asked for again."""
+    """Return enough lines for any drill: it repeats its question after an invalid answer."""
     return (KEYS + "n\n") * rounds
 
 
@@ -40,7 +40,7 @@ def test_a_drill_by_lines_is_played_and_stored(tangy: Tangy, tmp_path: Path) -> 
     again = tangy(*asked, *data, stdin=answers(8)).stdout
     rounds, rounds_again = (
         re.sub(r", \d+ s\.", "", told.partition("Ada: ")[0]) for told in (done.stdout, again)
-    )  # but for how long the answers took
+    )  # except for the times of the answers
     assert rounds_again.startswith(rounds), "the same seed, the same rounds"
     assert "The last time: " in again
     assert "The last time: " not in done.stdout

@@ -89,7 +89,7 @@ gone = tangy_radio.nowhere:Method
 
 
 def wheel(folder: Path) -> Path:
-    """Build the wheel of a small package, as its author would with any build tool."""
+    """Build the wheel of a small package, as with any build tool."""
     lotto = shipped_activities()["bingo"].read_text(encoding="utf-8")
     info = "tangy_radio-1.2.dist-info"
     files = {
@@ -114,7 +114,7 @@ def wheel(folder: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The Python of a temporary environment that has Tangy and that package."""
+    """The Python of a temporary environment with Tangy and that package."""
     folder = tmp_path_factory.mktemp("others")
     venv.create(folder / "env", with_pip=False)
     python = folder / "env" / "bin" / "python"

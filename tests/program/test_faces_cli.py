@@ -23,7 +23,7 @@ Tangy = Callable[..., CompletedProcess[str]]
 
 @pytest.fixture(scope="session")
 def album(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folders with pictures of two people, five each, and one picture more of each of three."""
+    """Folders with five pictures of each of two people, and one more picture of each of three."""
     folder = tmp_path_factory.mktemp("album")
     for person in range(2):
         (folder / str(person)).mkdir()
@@ -51,7 +51,7 @@ def _known(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def data(_known: Path, tmp_path: Path) -> Path:
-    """A data folder in which Rosa, who plays, and Ben, who does not, are known."""
+    """A data folder that knows Rosa, who plays, and Ben, who does not."""
     return Path(shutil.copytree(_known, tmp_path / "mine"))
 
 
@@ -130,7 +130,7 @@ def test_a_terminal_asks_the_person_for_consent(
     assert "User 1, may Tangy know your face?" in done.stderr
     assert (done.returncode == 0) == kept == (tmp_path / "d" / "faces").exists()
     if kept:
-        assert "may Tangy" not in tangy(*asked).stderr  # it was asked before
+        assert "may Tangy" not in tangy(*asked).stderr  # consent was given before
 
 
 def test_the_form_of_consent_is_logged_without_names(
@@ -175,7 +175,7 @@ def test_forgetting_a_person_leaves_no_data(tangy: Tangy, data: Path, who: str) 
     with Store.open(data) as store:
         store.pronounce(id, "R OW Z AH")
         kept = next((data / "faces").glob(f"*-{id}.face")).read_bytes().partition(b"\n")[2]
-    (data / "faces" / f".hoglbp1-{id}.face").write_bytes(kept)  # as if writing it had been cut off
+    (data / "faces" / f".hoglbp1-{id}.face").write_bytes(kept)  # as if writing had been cut off
     told = json.loads(tangy("people", "forget", who, "--yes", "--json", "--data", data).stdout)
     assert (told["id"], told["name_left_in_events"]) == (id, 0)
     left = b"".join(path.read_bytes() for path in data.rglob("*") if path.is_file())
@@ -236,7 +236,7 @@ def test_bad_pictures_of_a_folder_are_named_with_the_reason(
     done = tangy("faces", "enrol", "user1", "--from", folder, *how)
     assert done.returncode == 2 and "only 2 of 5" in done.stderr
     (row,) = json.loads(tangy("faces", "list", "--json", "--data", tmp_path / "d").stdout)
-    assert row["pictures"] == 4  # those of before
+    assert row["pictures"] == 4  # the earlier ones
 
 
 def test_more_pictures_can_be_added(tangy: Tangy, album: Path, data: Path, tmp_path: Path) -> None:

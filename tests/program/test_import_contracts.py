@@ -22,7 +22,7 @@ def lint(folder: Path) -> str:
 
 
 def adds(path: Path, line: str) -> None:
-    """Add an import to a module, inside a function, where it hides best."""
+    """Add an import to a module, inside a function, where it is easiest to miss."""
     before = path.read_text(encoding="utf-8") if path.exists() else ""
     path.write_text(f"{before}\n\ndef late() -> None:\n    {line}\n", encoding="utf-8")
 

@@ -44,7 +44,7 @@ def told(
     resume: bool = True,
     again: Again | None = None,
 ) -> list[str]:
-    """Hold a session in which these lines are typed; return its output."""
+    """Run a session in which these lines are typed; return its output."""
     typed = iter(lines)
     said: list[str] = []
     teaching = workspace.teaching(teacher, 1, again=again)

@@ -136,7 +136,7 @@ def test_a_signal_outside_a_wait_cancels_the_opening() -> None:
     robot = Robot()
 
     def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
-        signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # this thread's, not the main's
+        signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # this thread, not the main one
         return robot(stepped, cancellation)
 
     with pytest.raises(SystemExit) as ended, switched_on(opening, stepped=False):
@@ -157,14 +157,14 @@ def test_a_signal_in_a_game_closes_the_robot() -> None:
     ):
         assert world is WORLD
         playing.set()
-        for _ in range(400):  # one long wait may not hear a signal that another thread takes
+        for _ in range(400):  # one long wait may miss a signal that another thread takes
             threading.Event().wait(0.05)
         pytest.fail("nothing came of it")
     assert robot.did == ["begins", "is on", "is off"]
 
 
 def test_an_ignored_hangup_does_not_cancel() -> None:
-    """As `nohup tangy live --bench --headless` has it."""
+    """`nohup tangy live --bench --headless` starts this way."""
     robot = Robot()
     robot.answers.set()
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
@@ -192,7 +192,7 @@ def test_a_cancelled_bench_ends_at_once(monkeypatch: pytest.MonkeyPatch) -> None
             robot="/dev/null",
             cancellation=cancellation,
         )
-    assert time.monotonic() - began < device_simulator.END_SECONDS  # it is not waited for
+    assert time.monotonic() - began < device_simulator.END_SECONDS  # nothing waits for it
     caller.join()
 
 

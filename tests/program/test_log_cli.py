@@ -42,7 +42,7 @@ def _played(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def played(_played: Path, tmp_path: Path) -> Path:
-    """A data folder in which three games were played: a smooth, a bumpy, and a stopped one."""
+    """A data folder with three games: one without faults, one with faults, and a stopped one."""
     return Path(shutil.copytree(_played, tmp_path / "played"))
 
 

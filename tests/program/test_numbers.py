@@ -1,4 +1,4 @@
-"""A count, a share and a list have one form wherever they are written."""
+"""A count, a share and a list have the same form everywhere."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_alternatives_are_joined_by_or() -> None:
 
 
 def plural_rules(source: Path) -> list[str]:
-    """Return the functions of a module that make a noun plural by an "s" themselves."""
+    """Return the functions of a module that form a plural with "s" themselves."""
     tree = ast.parse(source.read_text(encoding="utf-8"))
     return [
         f"{source.relative_to(PROGRAM).as_posix()}:{node.lineno}"

@@ -1,4 +1,4 @@
-"""`tangy people`: what works with each person, in words and as JSON, and feedback by staff."""
+"""`tangy people`: the strategies of each person, in words and as JSON, and feedback by staff."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """A data folder in which Rosa played three weeks ago, and one request waits for an answer."""
+    """A data folder: Rosa played three weeks ago, and one request waits for an answer."""
     then = datetime.now(UTC) - timedelta(days=23)
     with Store.open(tmp_path / "mine", now=lambda: then) as store:
         store.rename("user1", "Rosa")

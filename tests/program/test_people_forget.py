@@ -42,7 +42,7 @@ def teach(folder: Path, *lines: str) -> None:
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """A data folder in which user2 is called Xanthippe, wherever a name may stand."""
+    """A data folder in which user2 is called Xanthippe, in every place for a name."""
     folder = tmp_path / "mine"
     with Store.open(folder) as store:
         store.rename("user2", NAME)

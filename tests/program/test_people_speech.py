@@ -24,7 +24,7 @@ LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """A data folder in which Rosa and Xanthippus take part."""
+    """A data folder with the people Rosa and Xanthippus."""
     with Store.open(tmp_path / "mine") as store:
         store.rename("user1", "Rosa")
         store.rename("user2", "Xanthippus Lee")
@@ -33,7 +33,7 @@ def data(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def spoken(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, VoicePreference | None]]:
-    """What was said aloud, and how the person likes to be spoken to."""
+    """The spoken lines, and the voice settings of each."""
     said: list[tuple[str, VoicePreference | None]] = []
 
     async def hear(
@@ -112,7 +112,7 @@ class TestNames:
         with Store.open(data) as store:
             assert store.pronunciations() == {"user2": "Z AE N TH OY, L IY"}
             assert "TH OY" not in json.dumps([event.body for event in store.events()])
-            store.rename("user2", "Xanthippus Lee")  # which is no other name
+            store.rename("user2", "Xanthippus Lee")  # a longer name counts as the same
             assert store.pronunciations()
             store.rename("user2", "Ann")
             assert store.pronunciations() == {}
@@ -217,7 +217,7 @@ class TestVoices:
     def test_rate_and_voice_are_set_and_reset_separately(
         self, tangy: Tangy, data: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setenv("PATH", "")  # so that espeak-ng is not asked which voices there are
+        monkeypatch.setenv("PATH", "")  # so that espeak-ng cannot list its voices
         asked = ("people", "voice", "Rosa", "--data", data)
         assert tangy(*asked).stdout == "Tangy speaks to Rosa as to everybody else.\n"
         tangy(*asked, "--rate", "110")

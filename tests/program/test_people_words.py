@@ -33,7 +33,7 @@ Counts = Mapping[str, tuple[int, int]]
 
 @pytest.fixture
 def noted(tmp_path: Path) -> Callable[..., Record]:
-    """Read the record of Rosa from a log with these counts and switches."""
+    """Read Rosa's record from a log with these counts and switches."""
 
     def note(
         counts: Counts, off: tuple[str, ...] = (), strategies: tuple[str, ...] = NAMES

@@ -25,7 +25,7 @@ SAME = [
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """Return the options of every program that was opened."""
+    """Return the options of every opened program."""
     calls: list[dict[str, Any]] = []
 
     def opens(data: Path | None = None, *, robot: str = "tangy", ascii_only: bool = False) -> int:

@@ -18,7 +18,7 @@ KEYS = {"text", "said", "voice", "rate", "seconds", "sink", "out", "problem"}
 
 @pytest.fixture
 def speaker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Speaker:
-    """A machine that has a synthesiser, and nothing to hear it with."""
+    """A machine with a synthesiser, but without a sound card."""
     made = Speaker(tmp_path / "speaker")
     monkeypatch.setenv("PATH", f"{made.path.parent}:/bin:/usr/bin")
     for name in ("aplay", "pw-play", "paplay", "afplay"):
@@ -29,7 +29,7 @@ def speaker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Speaker:
 
 @pytest.fixture
 def heard(speaker: Speaker, tmp_path: Path) -> Path:
-    """Give the machine a sound card; what was heard is in this file."""
+    """Give the machine a sound card; this file records its sound."""
     program(speaker.path.parent / "aplay", f'cat "$2" >> "{tmp_path}/heard"')
     return tmp_path / "heard"
 

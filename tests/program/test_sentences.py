@@ -1,7 +1,7 @@
-"""Sentences for people stand in `tangy_tui/text`: elsewhere they are counted, and only get fewer.
+"""Sentences for people belong in `tangy_tui/text`: sentences elsewhere may only become fewer.
 
-Not counted are the reasons of errors, which name what was wrong where it is found, the help of the
-command line and of keys beside what they explain, and what is logged for engineers.
+Exempt are the reasons of errors, which name the fault where it is found, the help of the
+command line and of keys beside its subject, and log messages for engineers.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ CODE = re.compile(r"SELECT|CREATE|INSERT|\\|\(\?|</|\{\s*[a-z-]+:")
 
 
 def said(text: str) -> bool:
-    """Say whether a text is a sentence for people: three words, and a capital or a full stop."""
+    """Return whether a text is a sentence for people: three words, and a capital or a full stop."""
     words = re.findall(r"(?<![\w{])[A-Za-z][A-Za-z'-]*(?![\w}])", text)
     if not any(word[1:].islower() for word in words):  # sounds are written in capitals
         return False
@@ -37,7 +37,7 @@ def said(text: str) -> bool:
 
 
 def beside(parents: dict[ast.AST, ast.AST], node: ast.AST) -> bool:
-    """Say whether a text stands where it need not be counted."""
+    """Return whether a text is exempt by its place."""
     above: ast.AST | None = node
     while above is not None:
         if isinstance(above, ast.Raise):
@@ -74,7 +74,7 @@ def sentences(source: Path) -> int:
 
 
 def elsewhere() -> dict[str, int]:
-    """Count the sentences of each module outside the one place for them."""
+    """Count the sentences of each module outside `tangy_tui/text`."""
     sources = (p for floor in FLOORS for p in sorted((HOUSE / floor).rglob("*.py")))
     names = {source.relative_to(HOUSE).as_posix(): source for source in sources}
     counts = {n: sentences(p) for n, p in names.items() if not n.startswith("tangy_tui/text/")}
@@ -82,7 +82,7 @@ def elsewhere() -> dict[str, int]:
 
 
 def table() -> tuple[dict[str, int], dict[str, str]]:
-    """Read how many sentences each module may hold, and for which ones they stay for a reason."""
+    """Read each module's limit, and the modules whose sentences stay for a reason."""
     counts: dict[str, Any] = tomllib.loads(TABLE.read_text(encoding="utf-8"))
     exceptions: dict[str, dict[str, Any]] = counts.pop("exceptions")
     counts |= {name: one["count"] for name, one in exceptions.items()}

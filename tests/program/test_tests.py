@@ -1,7 +1,7 @@
 """Rules for tests: public names of the product, local fixtures, and screens compared as text.
 
-A test that reads a private attribute breaks when the inside changes and nothing else; what a test
-must see, a reader of the code wants to see as well, and it gets a public name.
+A test that reads a private attribute breaks when only the inside changes; a test and a reader of
+the code need the same information, so it gets a public name.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def private(name: str) -> bool:
 
 
 def named(tree: ast.AST) -> Iterator[str]:
-    """Give the private names that a module defines."""
+    """Return the private names that a module defines."""
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             yield node.name
@@ -48,7 +48,7 @@ def of_the_product() -> frozenset[str]:
 
 
 def touched(tree: ast.Module) -> Iterator[str]:
-    """Give each private name of the product that a test reads, sets, imports or replaces."""
+    """Return each private name of the product that a test reads, sets, imports or replaces."""
     own = set(named(tree))
     for node in ast.walk(tree):
         match node:

@@ -108,7 +108,7 @@ def teaching(folder: Path, **environment: str) -> Terminal:
 
 @pytest.fixture
 def here(folder: Path) -> Iterator[Terminal]:
-    """Teaching by lines beside the machine."""
+    """Teaching by lines on this machine."""
     terminal = teaching(folder)
     yield terminal
     terminal.end()

@@ -96,7 +96,7 @@ class Page:
         self.stopped = False
 
     async def start(self, width: int, height: int) -> None:
-        """Begin to show nothing."""
+        """Start without showing anything."""
 
     async def stop(self) -> None:
         """End."""
