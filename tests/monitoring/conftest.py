@@ -1,4 +1,4 @@
-"""What the tests of execution monitoring share: supervised games with faults in them."""
+"""Fixtures of the tests of execution monitoring: supervised games with faults."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Supervise = Callable[..., Supervision]
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
 @pytest.fixture
 def supervise(workspace: Workspace, learnt: Policy) -> Iterator[Supervise]:
-    """Make supervised games: (*injections, seed=1, asks=True) -> them; written in one go."""
+    """Make supervised games: (*injections, seed=1, asks=True) -> games; in one transaction."""
 
     def make(*injections: str, seed: int = 1, asks: bool = True) -> Supervision:
         return workspace.supervision(learnt, seed, asks=asks, injections=injections)

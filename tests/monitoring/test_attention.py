@@ -52,7 +52,7 @@ def game(**given: object) -> Game:
 
 
 def replay_of(*states: ActivityState, behaviour: str = "b", target: str = "") -> GameReplay:
-    """Make a game of steps of ten seconds each, which lead from state to state."""
+    """Make a game of ten-second steps from state to state."""
     found = GameReplay(game())
     for number, (before, after) in enumerate(pairwise(states), 1):
         begun = found.seconds
@@ -97,7 +97,7 @@ def test_calls_first_does_not_interrupt_a_wait() -> None:
         state("bob", ["bob"]),
     )  # fmt: skip
     before = attention_in(replay)["bob"]
-    assert (before.requests, before.waits) == (2, [10.0, 10.0])  # without the change: asked anew
+    assert (before.requests, before.waits) == (2, [10.0, 10.0])  # a request anew
     first = GameChange(game="g1", what="calls first", steps=1, number=2)
     moments = [
         replace(m, what=replace(m.what, draws=True)) if isinstance(m.what, Done) else m
@@ -215,13 +215,13 @@ def test_a_session_is_the_last_games_of_one_world_without_a_long_pause() -> None
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder in which three demonstrations were given and learnt from."""
+    """A folder with three demonstrations and a policy learned from them."""
     return taught
 
 
 @pytest.fixture
 def played(workspace: Workspace, learnt: Policy) -> Workspace:
-    """Two games, one with a fault, and a person who was given a name."""
+    """Two games, one with a fault, and a person with a name."""
     with workspace.store.transaction():
         play(workspace.supervision(learnt, 1, asks=True))
         play(workspace.supervision(learnt, 2, asks=True, injections=["arm-failed@9"]))

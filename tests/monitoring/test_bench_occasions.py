@@ -34,7 +34,7 @@ class FakeBench:
 
 
 def beside_somebody(**faults: str) -> BenchedWorld:
-    """Return a world in which the robot stands beside a person who asks, whose card is unread."""
+    """Return a world with the robot beside a person who asks, whose card is unread."""
     link = cast(RobotLink, FakeLink(PEOPLE))
     world = BenchedWorld(BINGO, PEOPLE, link, load_robot(), load_room(), seed=1)
     world.on(cast(DeviceSimulator, FakeBench(**faults)))
@@ -73,7 +73,7 @@ def test_a_refusing_person_can_show_at_any_request_about_the_card() -> None:
     [
         ({}, PEOPLE, True),
         ({"requests_silent": ""}, PEOPLE, False),  # no sensor sees it
-        ({}, ("user2",), False),  # it is down already
+        ({}, ("user2",), False),  # the sign is down already
     ],
 )
 def test_a_stuck_sign_can_show_only_if_a_sign_is_seen(

@@ -77,10 +77,10 @@ def test_failed_late_and_confirmed_calls_are_distinguished(
     words = [expert_words(game)]
     line.says("Anna Berg", "failed", "no line")
     words.append(expert_words(game))
-    game.call_expert("Ada")  # tried again
+    game.call_expert("Ada")  # repeated
     line.says("Anna Berg", "sent")
     words.append(expert_words(game))
-    assert all("030 901820" in one for one in words)  # nobody was reached: staff call themselves
+    assert all("030 901820" in one for one in words)  # staff must telephone themselves
     line.says("Anna Berg", "answered", "I am on my way")
     assert "030 901820" not in expert_words(game) and "I am on my way" in expert_words(game)
     line.says("Anna Berg", "failed", "too late")
@@ -111,7 +111,7 @@ def test_an_answer_about_an_earlier_fault_does_not_count_for_a_later_one(
 
 
 class SlowButtons:
-    """A chest screen whose first offer is delayed until a later one could overtake it."""
+    """A chest screen whose first offer is delayed so that a later one could overtake it."""
 
     on_answer: Callable[[str], object]
 
@@ -157,11 +157,9 @@ def test_a_robot_without_contacts_reports_no_call(
     game.call_expert("Ada")
     assert not line.messages and "calls nobody" in expert_words(game)
     assert logged(workspace.store) == []
-    assert game.reached("Ada")  # by their own telephone
+    assert game.reached("Ada")  # staff telephoned her themselves
     assert logged(workspace.store) == [(EXPERT, "reached", "Ada")]
-    assert "Anna Berg was reached, by Ada." in expert_words(
-        game
-    )  # it is not said that she answered
+    assert "Anna Berg was reached, by Ada." in expert_words(game)  # nobody claims that she answered
 
 
 def test_the_outcome_of_a_call_is_an_event_of_the_game(
@@ -180,7 +178,7 @@ def test_the_outcome_of_a_call_is_an_event_of_the_game(
         (STAFF_ROLE, "tried", ""),
         (STAFF_ROLE, "answered", "coming"),
     ]
-    assert not game.look()  # each of them once
+    assert not game.look()  # each call only once
     assert live_lines(told, [], str) == [
         "The staff (command): a message is being sent.",
         "The staff (command): was reached, and answered: coming.",

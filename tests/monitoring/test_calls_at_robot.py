@@ -24,7 +24,7 @@ pytestmark = pytest.mark.slow
 
 
 def posted(address: str, target: str, body: str = "", cookie: str = "") -> tuple[int, str]:
-    """Ask a page for something as a tablet does; return the status, and the cookie it is given."""
+    """Send a page's request as a tablet does; return the status and the new cookie."""
     place = urlsplit(address)
     page = HTTPConnection(place.hostname or "", place.port, timeout=30)
     page.request("POST", target, body, {"Cookie": cookie} if cookie else {})
@@ -50,7 +50,7 @@ def test_a_press_on_the_chest_screen_reaches_the_console_and_the_log(
         status, cookie = posted(link.screen, "/pair", link.code.replace("-", ""))
         assert status == 204
 
-        def pressed() -> bool:  # once the page has heard of the call
+        def pressed() -> bool:  # once the page shows the call
             return posted(link.screen, target, cookie=cookie)[0] == 204
 
         assert posted(link.screen, target)[0] == 403  # a stranger's browser

@@ -82,7 +82,7 @@ def put(folder: Path, seq: int, key: str, value: object) -> None:
 
 
 def read_all(folder: Path) -> None:
-    """Read from a log all that the verbs read; what a person can mend may be said."""
+    """Read everything from a log that the verbs read; errors that people can correct may occur."""
     workspace = Workspace(folder, write=False)
     try:
         store, name = workspace.store, workspace.activity.name
@@ -131,7 +131,7 @@ COLUMNS = st.sampled_from(["at", "kind", "uuid", "robot", "person", "strategy", 
 
 
 def places(value: Any, way: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    """Return the way to every value inside a body."""
+    """Return the path to every value in a body."""
     keys = value if isinstance(value, dict) else range(len(value)) if _is_list(value) else ()
     return [one for key in keys for one in ((*way, key), *places(value[key], (*way, key)))]
 
@@ -149,7 +149,7 @@ def _is_list(value: Any) -> bool:
 
 @st.composite
 def damages(draw: st.DrawFn) -> Callable[[sqlite3.Connection], None]:
-    """Draw something that can happen to one row."""
+    """Draw a possible damage of one row."""
     kind, place = draw(st.sampled_from(sorted(kinds()))), draw(st.integers(0, 10**6))
     how = draw(st.sampled_from(["inside", "inside", "inside", "body", "column"]))
     value, gone = draw(ODD), draw(st.booleans())
@@ -188,7 +188,7 @@ def _survives(folder: Path, several: list[Callable[[sqlite3.Connection], None]])
         copy = Path(shutil.copytree(folder, Path(scratch) / "data"))
         with closing(sqlite3.connect(copy / "tangy.db")) as db:
             db.executescript("DROP TRIGGER unchanged; DROP TRIGGER undeleted;")
-            db.text_factory = _text_or_bytes  # what was damaged once can be damaged again
+            db.text_factory = _text_or_bytes  # a damaged row can be damaged again
             for damage in several:
                 with suppress(sqlite3.IntegrityError):  # SQLite itself refuses it
                     damage(db)
@@ -247,7 +247,7 @@ def test_a_verb_names_a_damaged_row_and_continues(
     ran = tangy(*verb, "--data", every_kind)
     named = f"event {seq} ({kind}) is damaged and left out: it has no '{key}'"
     assert named in ran.stderr
-    if (kind, verb) != ("policy learnt", ("policy",)):  # then nothing was learnt, it says
+    if (kind, verb) != ("policy learnt", ("policy",)):  # then nothing was learned, it says
         assert ran.returncode == 0, ran.stderr
 
 
@@ -373,7 +373,7 @@ def test_undoing_a_damaged_step_undoes_no_other(every_kind: Path) -> None:
 
 
 def test_an_undo_belongs_to_its_edit_despite_damage(every_kind: Path) -> None:
-    """The split was undone and redone: where the split is left out, the merge stays as it was."""
+    """The split was undone and redone: without the split's row, the merge stays as it was."""
     merge, split, *_ = seqs(every_kind, "demonstrations edited")
     undone = seqs(every_kind, "demonstrations edit undone")[0]
     drop(every_kind, split, "kept")

@@ -59,7 +59,7 @@ def test_a_hidden_card_counts_as_a_refusal_only_after_a_refused_visit(
     for _ in range(workspace.activity.asking.visit):
         detector.refused(person)
     assert not told()
-    detector.forgive(person)  # they were left in peace
+    detector.forgive(person)  # Tangy gave up on the request
     assert not told()
     encourage = workspace.activity.behaviours["encourage"]
     assert told(encourage), "a refusal explains no behaviour that asks for nothing"
@@ -203,7 +203,7 @@ def test_an_injection_is_written_back_unchanged(text: str) -> None:
 
 
 def test_a_game_without_progress_asks_the_teacher(supervise: Supervise) -> None:
-    """A policy that tells jokes where numbers should be called: nothing ever changes by it."""
+    """A policy that tells jokes when it should call numbers: they change no state."""
     game = supervise(seed=2)
     policy = game.policy
     joke = next(b for b in policy.table.values() if b.behaviour == "joke")
@@ -232,9 +232,9 @@ def test_a_device_silent_just_before_the_link_is_not_blamed() -> None:
 
     lost = robot.devices["link"].lost_after
     assert lost == robot.devices["laser"].lost_after == robot.devices["camera"].lost_after
-    assert of(0.03, lost + 0.05)["laser.state"] == STALE  # the link is well: it is the scanner
-    assert of(lost - 0.05, lost + 0.05)["laser.state"] != STALE  # that will be known in a moment
-    assert of(0.3, 0.3, lost + 0.25)["camera.state"] == OK  # young enough when last heard of
+    assert of(0.03, lost + 0.05)["laser.state"] == STALE  # only the scanner is stale
+    assert of(lost - 0.05, lost + 0.05)["laser.state"] != STALE  # its fault comes in a moment
+    assert of(0.3, 0.3, lost + 0.25)["camera.state"] == OK  # recent enough at its last report
     assert of(0.3, 0.3, lost + 0.35)["camera.state"] == STALE  # lost before the link was quiet
     assert of(lost - 0.4, lost - 0.4, lost + 0.01)["camera.state"] != STALE  # an older picture
     both = of(lost + 0.01, lost + 0.09)
@@ -266,4 +266,4 @@ def test_late_data_is_reported_but_no_symptom() -> None:
     assert laser(0.3) == laser(0.3, STALE) == (OK, (LATE, "laser scanner"))
     assert laser(1.4) == (OK, (LATE, "laser scanner"))
     assert laser(1.6) == (STALE, (STALE, "laser scanner"))
-    assert laser(0.05, STALE) == (STALE, (STALE, "laser scanner"))  # it says so itself
+    assert laser(0.05, STALE) == (STALE, (STALE, "laser scanner"))  # it reports this itself

@@ -28,7 +28,7 @@ SHOWING = sorted(name for name, kind in KINDS.items() if kind.symptom)
 
 
 def evidence(*kinds: str) -> dict[str, Fact]:
-    """Return what the devices give as evidence when faults of these kinds have lasted for 5 s."""
+    """Return the devices' evidence 5 s after faults of these kinds began."""
     from tangy_profiles.activity import load_activity
 
     found = readings([(symptom, 5.0) for k in kinds if (symptom := KINDS[k].symptom)])
@@ -67,7 +67,7 @@ def test_diagnoses_are_sorted_by_urgency_and_complete(kinds: set[str]) -> None:
     assert urgencies == sorted(urgencies)
     explained = frozenset().union(*(diagnosis.rule.symptoms for diagnosis in told))
     assert symptoms(found) <= explained
-    for kind in kinds:  # it is told, or put down to something worse, or its device is silent
+    for kind in kinds:  # it is named, or explained by a worse fault, or its device is silent
         rule = BOOK.rule(KINDS[kind].code)
         silent = found[f"{rule.device}.state"] == "STALE"
         assert rule in [d.rule for d in told] or rule.symptoms & explained or silent
@@ -131,7 +131,7 @@ def test_a_robots_file_names_the_expert(tmp_path: Path) -> None:
         load_robot(str(file))
 
 
-# A book of our own says what is promised of any rules.
+# A separate book states the guarantees of any rules.
 
 
 def rule(code: str, *when: Condition, **more: object) -> FaultRule:

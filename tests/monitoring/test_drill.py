@@ -59,7 +59,7 @@ class Clock:
 
 @pytest.fixture(scope="module")
 def learnt(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> DrillPolicy:
-    """What a drill is played by where nothing was learnt."""
+    """The policy of drills without demonstrations."""
     with Store.open(tmp_path_factory.mktemp("nothing") / "data") as nothing:
         return policy_for_drill(nothing, activity)
 
@@ -72,7 +72,7 @@ def table(learnt: DrillPolicy, activity: Activity, people: tuple[Person, ...]) -
 
 
 def right_keys(drill: Drill) -> list[str]:
-    """Answer a round as is right; return the keys."""
+    """Answer a round correctly; return the keys."""
     keys: list[str] = []
     shown = drill.round
     assert shown is not None
@@ -153,7 +153,7 @@ def test_no_round_is_at_the_end_of_its_game(
         return real(self, number, kind, game, *rest)
 
     monkeypatch.setattr(DrillSimulator, "fault_round", look)
-    monkeypatch.setattr(drill_rounds, "SETS_IN", (40, 70))  # where most games end
+    monkeypatch.setattr(drill_rounds, "SETS_IN", (40, 70))  # in which most games end
     late = next(kind for kind in KINDS if kind.name == "request-withdrawn")
     for seed in range(8):
         table.play(1, late, Random(seed))
@@ -194,7 +194,7 @@ def test_the_correct_answer_on_clearing_matches_the_supervision(table: DrillSimu
             shown = table.play(1, kind, Random(seed))
             assert shown.release is not None
             assert shown.fault is not None
-            # Gone exactly if what is seen now is no longer what was seen then.
+            # The fault is gone exactly if the robot's observation has changed since.
             same = shown.fault.why.startswith(shown.release.seen)
             assert shown.release.right is not same, (kind.name, shown.release, shown.fault.why)
             right[shown.release.right] += 1
@@ -306,7 +306,7 @@ def test_a_resumed_drill_has_the_original_rounds(table: DrillSimulator, store: S
     for _ in range(2):
         before.next()
         right_keys(before)
-    before.next()  # and the program is killed
+    before.next()  # and the program was killed
     past = interrupted_sheet(store, "Bea", "bingo")
     assert past is not None and past.answered == before.sheet.answered
     assert interrupted_sheet(store, "ada", "bingo") is None
@@ -371,7 +371,7 @@ def test_the_time_starts_when_the_round_is_shown(table: DrillSimulator, store: S
     drill.shown()
     clock.now += 4
     drill.answer(NOTHING)
-    drill.shown()  # too late to begin anew
+    drill.shown()  # too late to start over
     clock.now += 2
     right_keys(drill)
     assert drill.sheet.answered[0].seconds == 6

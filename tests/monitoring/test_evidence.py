@@ -45,7 +45,7 @@ def acted(
     numbers: tuple[int, ...] = (),
     completed: bool = True,
 ) -> Acted:
-    """Make a step: a behaviour in a state, and what came of it."""
+    """Make a step: a behaviour in a state, and its outcome."""
     after = state._replace(step=state.step + 1)
     if changed:
         after = after._replace(place="front" if state.place != "front" else "user2")

@@ -1,4 +1,4 @@
-"""Limits of requests: people who do not comply, seen or unseen, are left in peace."""
+"""Limits of requests: Tangy gives up on people who do not comply, seen or unseen."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_a_repeated_refusal_with_a_hidden_card_is_no_new_card_fault(
                     assert not told["never-complies", fault.person]
                 again += fault.code == "never-complies" and told[fault.code, fault.person] > 0
                 told[fault.code, fault.person] += 1
-    assert again > 3  # who came again and refused again
+    assert again > 3  # from people who asked again and refused again
 
 
 @pytest.mark.slow
@@ -133,7 +133,7 @@ def test_a_choice_can_exclude_strategies() -> None:
 
 
 def asked(events: list[Event], person: str) -> int:
-    """Count what a person was asked for in vain in a game, by behaviours and aloud."""
+    """Count the requests in a game that a person refused, by behaviours and aloud."""
     found = 0
     for event in events:
         if isinstance(event, Acted):
@@ -199,7 +199,7 @@ def test_excluded_strategies_stay_excluded_when_avoiding_repetition() -> None:
     people = Persuasion(["a"], ["calm", "pressing", "kind"], Random(1))
     assert {people.choose("a", ["pressing"], again="kind").strategy for _ in range(50)} == {"calm"}
     chosen = {people.choose("a", ["pressing", "calm"], again="kind").strategy for _ in range(50)}
-    assert chosen == {"kind"}  # there is no other way of saying it
+    assert chosen == {"kind"}  # no other strategy is available
 
 
 def test_repeated_recovery_requests_have_two_wordings() -> None:

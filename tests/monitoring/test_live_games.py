@@ -45,7 +45,7 @@ def test_a_swapped_seat_is_reported_once_in_each_game(workspace: Workspace, lear
         if game.steps in (2, 12):
             link.sign(2)
         elif world.tracker.place == "user2":
-            link.sign()  # no sign is up any more
+            link.sign()  # all signs are down
 
     played.play(range(2), expert=False, tell=tell)
     going = workspace.activity.behaviours["navigate to user"].question
@@ -111,7 +111,7 @@ def test_an_unjudged_card_is_reported_logged_and_counted(
         if game.steps == 2:
             link.sign(2)
         elif world.tracker.place == "user2":
-            link.sign()  # no sign is up any more
+            link.sign()  # all signs are down
 
     played.play(range(1), expert=False, tell=tell)
     told = [line for line in lines if "two cards in front of User 2: 7 and 9" in line]

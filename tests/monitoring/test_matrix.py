@@ -65,7 +65,7 @@ def test_a_refused_request_cannot_show_a_stuck_sign(
     action = world.activity.action(mending, person, None)
     assert world.can_show(KINDS["request-stuck"], action)
     world.inject("never-complies")
-    world.execute(action)  # which refuses
+    world.execute(action)  # the world refuses it
     assert "never-complies" in world.present
     assert not world.can_show(KINDS["request-stuck"], action)
 

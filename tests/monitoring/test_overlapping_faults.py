@@ -15,11 +15,11 @@ from tests.support.games import codes, ended, play
 @pytest.mark.parametrize(
     ("first", "second", "seed"),
     [
-        # The place is not known again because the link that would tell of it is lost.
+        # The place is unknown again because the link that reports it is lost.
         ("carried-off@4", "link-lost@recovery", 17),
-        # Who puts a card right while the camera is covered has not refused.
+        # A person who corrects a card while the camera is covered has not refused.
         ("card-out-of-sight@8", "camera-occluded@recovery", 0),
-        # An expert mends a lost link first, or nothing that was mended could be seen to be.
+        # An expert repairs a lost link first: without it no other repair is visible.
         ("laser-disconnected@8", "link-lost@recovery", 0),
     ],
 )
@@ -34,7 +34,7 @@ def test_two_overlapping_faults_are_each_reported_once(
 def test_a_fault_of_a_silent_device_is_not_taken_for_over(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A real scanner without its cable does not say any more that it is covered."""
+    """A real scanner without its cable no longer reports that it is covered."""
     for seed in (14, 15):  # nobody uncovers it at once
         game = supervise("laser-occluded@7", "laser-disconnected@recovery", seed=seed)
         world = game.world

@@ -43,7 +43,7 @@ class Quiz:
         )
 
     def do(self, name: str, whom: str | None = None, answer: str = "") -> None:
-        """Carry out a behaviour; the person it was for then answers."""
+        """Carry out a behaviour; its person then answers."""
         world, state = self.world, self.world.observe()
         world.execute(self.activity.action(self.activity.behaviours[name], whom, None))
         if answer:
@@ -73,7 +73,7 @@ def played(quiz: Quiz) -> None:
     quiz.do("allow time")
     quiz.do("confirm answer", "user1")
     quiz.do("ask question", "user2", answer="wrong")
-    quiz.do("give hint", "user2", answer="wrong")  # wrong again: another answer
+    quiz.do("give hint", "user2", answer="wrong")  # wrong again, with another answer
     quiz.do("tell answer", "user2")
 
 

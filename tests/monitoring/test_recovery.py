@@ -255,7 +255,7 @@ def test_an_explained_fault_cannot_be_accepted(supervise: Supervise) -> None:
 
 
 def check_log(store: Store) -> None:
-    """Between a halt and what ends it nothing is executed; every game ends; attempts are few."""
+    """Nothing is executed between a halt and its end; every game ends; attempts are few."""
     halted: set[str] = set()
     going: set[str] = set()
     for event in store.events(GameBeginning, GameStep, GameEnding, FaultDiagnosed, FaultMove):
@@ -287,7 +287,7 @@ def check_log(store: Store) -> None:
 
 @pytest.fixture(scope="module")
 def small_policy(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
-    """The same demonstrations, learnt by few trees: a teacher's answers are learnt at once."""
+    """The same demonstrations, learned by few trees, so that answers are learned at once."""
     workspace = Workspace(Path(copytree(_taught, tmp_path_factory.mktemp("small") / "data")))
     with closing(workspace):
         shown = read_library(workspace.store, workspace.activity.name).finished
@@ -347,7 +347,7 @@ def test_twenty_games_full_of_faults_all_end(supervise: Supervise, workspace: Wo
 
 
 def closing_step(supervise: Supervise) -> tuple[int, int]:
-    """Return a seed, and a step of its game that settles a request that was open for nothing."""
+    """Return a seed, and a step of its game that closes a request without a need."""
     for seed in range(20):
         for done in acts(play(supervise(seed=seed))):
             if done.action.behaviour.name == "encourage":

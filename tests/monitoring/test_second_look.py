@@ -20,7 +20,7 @@ GAMES = 12
 
 
 def state(card: str) -> ActivityState:
-    """Return the state beside somebody whose card looks like that."""
+    """Return the state beside a person with this card."""
     users = (UserState("user1", card, "AR"),)
     return ActivityState(3, Situation("help", "AR", card), "user1", "user1", users)
 
@@ -41,7 +41,7 @@ class Eyes:
 
 
 def after(*looks: ActivityState) -> tuple[ActivityState, int]:
-    """Return what counts as seen after a behaviour that should leave all right, and the looks."""
+    """Return the state that counts after a behaviour that should leave all right, and the looks."""
     eyes = Eyes(looks)
     seen = Observation(cast(World, eyes)).after(lambda one: one != RIGHT)
     return seen, eyes.taken
@@ -80,7 +80,7 @@ def test_a_single_odd_look_causes_no_fault_and_no_request(
     game = workspace.supervision(learnt, 4, asks=True, world=world)
     with workspace.store.transaction():
         told = [event for _ in range(GAMES) for event in play(game)]
-    assert world.odd_looks > 5  # or it says nothing
+    assert world.odd_looks > 5  # else the test shows nothing
     assert (codes(told), moves(told), world.accused) == ([], [], 0)
 
 
@@ -104,6 +104,6 @@ def test_a_persistently_wrong_reading_is_left_to_staff_once(
             told += doubted
             assert len(doubted) <= 1 and all(fault.person == world.person for fault in doubted)
             first = [fault.code for fault in game.faults if fault.person == world.person][:1]
-            assert not doubted or first == ["unexplained"]  # once may be another mark
+            assert not doubted or first == ["unexplained"]  # a single look may be a different mark
             assert not any(fault.critical for fault in game.faults)
-    assert len(told) >= 3  # or it says nothing
+    assert len(told) >= 3  # else the test shows nothing

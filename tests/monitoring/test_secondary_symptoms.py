@@ -1,4 +1,4 @@
-"""Secondary symptoms: devices behind a lost link are no faults until they were well once."""
+"""Secondary symptoms: devices behind a lost link are no faults until they were healthy once."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from tangy_tui.text.faults import still_there_words
 from tests.support.games import codes, moves
 
 ROBOT = load_robot()
-LONG = 4.0  # s for which nothing was heard
+LONG = 4.0  # s of silence
 NOT_THE_LINK = tuple(name for name in ROBOT.devices if name != "link")
 
 
 def silent(*devices: str) -> Health:
-    """Return readings in which nothing was heard from these devices for long."""
+    """Return readings of which these devices have been silent for a long time."""
     return tuple(r._replace(age=LONG) if r.device in devices else r for r in WELL)
 
 
 class Seen:
-    """The faults left after secondary symptoms are removed, as devices come and go."""
+    """The faults that remain without secondary symptoms, as devices come and go."""
 
     def __init__(self) -> None:
         self.book: FaultBook = load_faults(ROBOT)
@@ -113,7 +113,7 @@ def game(workspace: Workspace, learnt: Policy, robot: Robot) -> Supervision:
 
 
 def stalled(game: Supervision, robot: Robot) -> list[str]:
-    """Let a robot fall silent, and come back but for two devices; return the faults told."""
+    """Let a robot fall silent, and come back without two devices; return the reported faults."""
     robot.readings = silent(*ROBOT.devices)
     told = game.look()
     robot.readings = silent("laser", "camera")
