@@ -28,12 +28,12 @@ WORLDS = (
 
 
 def places(attribute: str) -> Iterator[tuple[str, int, set[str]]]:
-    """Yield where the program matches an attribute, and the words that the cases name."""
+    """Yield the places where the program matches an attribute, and the words of the cases."""
     tops = [ROOT / top for top in ("hw", "profiles", "sim", "tangy_tui")]
     for path in sorted(path for top in tops for path in top.rglob("*.py")):
         source = path.read_text(encoding="utf-8")
         if not re.search(rf"\bmatch\b.*\b{attribute}\b", source, re.DOTALL):
-            continue  # most of them: to parse all takes seconds
+            continue  # most files: parsing all takes seconds
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.Match) and getattr(node.subject, "attr", "") == attribute:
                 parts = [part for case in node.cases for part in ast.walk(case.pattern)]
@@ -44,7 +44,7 @@ def places(attribute: str) -> Iterator[tuple[str, int, set[str]]]:
 
 @cache
 def matches() -> list[tuple[str, int, set[str]]]:
-    """Return the places that match an effect: looked for when a test asks, not by every worker."""
+    """Return the places that match an effect; lazily, so that not every worker searches."""
     return list(places("effect"))
 
 

@@ -60,7 +60,7 @@ def test_all_mistakes_are_reported_at_once_with_place_and_suggestion(folder: Pat
     near["'right'"] = '"rigt"'
     for word, wrong in near.items():
         (line,) = (line for line in found if f"did you mean {word}?" in line)
-        # a place points at a key, or into the value that is wrong
+        # a place points at a key, or into the wrong value
         row = place(text, wrong).partition(":")[0]
         assert line.startswith(f"mine.toml:{row}:")
     assert len(found) == len(changes)
@@ -148,7 +148,7 @@ def test_a_right_answer_is_given_by_words_or_letter(folder: Path, right: str) ->
 @pytest.mark.parametrize("right", ["d", "", "c"])
 def test_a_right_answer_outside_the_options_is_a_mistake(folder: Path, right: str) -> None:
     with pytest.raises(MistakesError) as caught:
-        first_right(folder, right, third="")  # the letter of an option without words is none
+        first_right(folder, right, third="")  # the letter of an option without words is no answer
     (line,) = caught.value.lines
     assert f"row 2: right {right!r} is none of its options" in line
 

@@ -49,7 +49,7 @@ def test_the_turn_of_the_next_person_is_progress_until_everybody_had_it() -> Non
         assert game.execute(name, "ann" if name == "name a pair" else None).completed
         watch.done(game)
         led.append(watch.end(game))
-    two_misses = led[4:]  # of ann, ben, and cat, who had the turn with so many before
+    two_misses = led[4:]  # of ann, ben, and cat, each of whom had a turn at this count
     assert led[:4] == ["on"] * 4 and two_misses == ["on", "on", "back", "back"]
 
 

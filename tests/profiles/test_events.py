@@ -48,7 +48,7 @@ NOT_READ = {
 def places() -> tuple[set[str], set[str]]:
     """Return the records that the program's code makes, and those that it reads.
 
-    Only what a worker needs is looked through: a source that names no record is not parsed.
+    To save time, sources that name no record are not parsed.
     """
     names = {record.__name__ for record in kinds().values()}
     some = re.compile(rf"\b(?:{'|'.join(names)})\b")
@@ -146,7 +146,7 @@ def states(draw: st.DrawFn) -> ActivityState:
 
 
 def records_of(kind: Any) -> st.SearchStrategy[Any]:
-    """Return a strategy of records, made from what their fields hold."""
+    """Return a strategy of records with generated fields."""
     hints = get_type_hints(kind, include_extras=True)
     names = [field.name for field in fields_of(kind)]
     made = {n: OF_FIELDS[n] if n in OF_FIELDS else values(hints[n]) for n in names}

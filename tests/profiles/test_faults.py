@@ -42,7 +42,7 @@ when = [{ "laser.state" = { is = "STALE" } }]
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    """The robot that ships."""
+    """The shipped robot."""
     return load_robot()
 
 

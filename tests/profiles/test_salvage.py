@@ -17,7 +17,7 @@ EVENTS = 400
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Return the folder of a log that tells of somebody with a name."""
+    """Return the folder of a log with a person's name."""
     with Store.open(tmp_path / "log") as store:
         store.rename("user1", "Rosa")
         with store.transaction():
@@ -71,7 +71,7 @@ def test_an_overwritten_page_adds_no_event(folder: Path, tmp_path: Path) -> None
 def test_an_unreadable_log_is_reported_until_accepted(folder: Path, page: int) -> None:
     overwrite(folder, 0, Random(page).randbytes(PAGE))
     if page:
-        (folder / "tangy.seal").unlink()  # then nobody can tell how many they were
+        (folder / "tangy.seal").unlink()  # then the number of events is unknown
     for _ in range(2):
         with Store.open(folder) as store:
             assert any("gone" in notice for notice in store.notices)

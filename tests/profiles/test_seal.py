@@ -31,7 +31,7 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 
 def killed(store: Store, folder: Path, *, but: str = "") -> Path:
-    """Copy the files as they lie when the program is killed now, all `but` one."""
+    """Copy the files as they are if the program is killed now, all `but` one."""
     folder.mkdir(exist_ok=True)
     for name in ("tangy.db", "tangy.db-wal", "tangy.lock", "tangy.seal"):
         if name != but:
@@ -57,7 +57,7 @@ def test_a_killed_program_loses_no_event(store: Store, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_every_lost_tail_is_reported(store: Store, tmp_path: Path) -> None:
-    """Damage that leaves all events says nothing; each that takes some says which."""
+    """Damage that leaves all events is not reported; every loss of events is, with the number."""
     for number in range(40):
         append_body(store, "joke", {"n": number, "text": "x" * 300})
     random, lost = Random(5), 0
@@ -113,7 +113,7 @@ def test_a_copy_of_a_busy_folder_reports_missing_events(store: Store, tmp_path: 
     append_body(store, "joke", {})
     folder = killed(store, tmp_path / "copy")
     append_body(store, "joke", {})
-    shutil.copy(store.folder / "tangy.seal", folder / "tangy.seal")  # the last one to be copied
+    shutil.copy(store.folder / "tangy.seal", folder / "tangy.seal")  # the seal is copied last
     assert "event 2 had been kept and is gone" in said(folder)[0]
     assert "a copy that was made while Tangy was writing" in said(folder)[0]
 
@@ -230,7 +230,7 @@ def test_a_clock_that_jumps_raises_no_alarm(tmp_path: Path) -> None:
 
 
 def test_the_count_never_exceeds_the_log(tmp_path: Path) -> None:
-    """It is written after the commit, so that a program killed in between leaves it behind."""
+    """The count is written after the commit, so a program killed in between leaves it behind."""
     with Store.open(tmp_path) as store:
         seal = Seal(tmp_path)
         with store.transaction():

@@ -45,7 +45,7 @@ def log_of(folder: Path) -> Path:
 
 
 def rebuild(folder: Path, sql: str) -> None:
-    """Change the log behind Tangy's back."""
+    """Change the log without Tangy's own code."""
     with closing(sqlite3.connect(log_of(folder))) as db:
         db.executescript(sql)
 
@@ -90,7 +90,7 @@ stories = st.lists(appends | blocks | st.just(("reopen",)), max_size=12)
 
 
 def perform(store: Store, deed: Any) -> None:
-    """Append, or run a block that may fail at its end; a failing part is caught where it stands."""
+    """Append, or run a block that may fail at its end; an error is caught in its own block."""
     if deed[0] == "append":
         append_body(store, **deed[1])
         return
@@ -465,7 +465,7 @@ def test_a_damaged_log_is_set_aside_and_a_new_one_begun(
 ) -> None:
     if large:
         monkeypatch.setattr(log_file, "ALWAYS_CHECKED", 1000)
-    for round_ in (1, 2):  # at the same second: the first one aside is not overwritten
+    for round_ in (1, 2):  # in the same second: the second must not overwrite the first one
         fill(tmp_path)
         damaged = scribble(log_of(tmp_path))
         with Store.open(tmp_path, now=lambda: NOON) as store:
@@ -474,14 +474,14 @@ def test_a_damaged_log_is_set_aside_and_a_new_one_begun(
             gone = sorted(set(range(1, 501)) - set(kept))
             assert 300 < len(kept) < 500 and f"with the {len(kept)} events" in notice
             assert f"events {gone[0]} to {gone[-1]}" in lost and store.check() == [lost]
-            assert append_body(store, "greeting", {}) == 502  # after the note of what is lost
+            assert append_body(store, "greeting", {}) == 502  # after the report of the loss
         aside = sorted(tmp_path.glob("tangy.db.damaged-20260304T120000Z*"))
         assert len(aside) == round_
         assert str(aside[-1]) in notice and notice.endswith(".")
         assert not list(tmp_path.glob("salvage-*"))
         assert aside[-1].read_bytes() == damaged
         log_of(tmp_path).unlink()
-        (tmp_path / "tangy.seal").unlink()  # else that the log is gone would be said
+        (tmp_path / "tangy.seal").unlink()  # else the missing log would be reported, too
     with Store.open(tmp_path) as store:
         assert store.notices == []
 
@@ -514,7 +514,7 @@ def test_damage_found_while_reading_is_mended_at_the_next_start(
     fill(tmp_path)
     times = log_of(tmp_path).stat()
     scribble(log_of(tmp_path))
-    os.utime(log_of(tmp_path), ns=(times.st_atime_ns, times.st_mtime_ns))  # rot leaves no time
+    os.utime(log_of(tmp_path), ns=(times.st_atime_ns, times.st_mtime_ns))  # decay leaves no time
     with Store.open(tmp_path) as store:
         assert store.notices == []
         assert store.check() != []
@@ -553,7 +553,7 @@ def test_check_reports_tampering(tmp_path: Path, tampering: str, word: str) -> N
 
 
 def fill_first_version(folder: Path) -> None:
-    """Make a log as the first Tangy did, in which somebody is named."""
+    """Make a log of Tangy's first version, with a person's name."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         with Store.open(folder) as store:
@@ -678,7 +678,7 @@ def test_a_newer_log_is_refused_and_untouched(tmp_path: Path, write: bool) -> No
     assert str(caught.value).endswith(".")
     assert log_of(tmp_path).read_bytes() == before
     rebuild(tmp_path, f"PRAGMA user_version = {len(log_file.MIGRATIONS)};")
-    with Store.open(tmp_path) as store:  # and the folder was let go
+    with Store.open(tmp_path) as store:  # the lock is free again
         assert len(list(store.events())) == 3
 
 

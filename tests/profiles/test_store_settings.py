@@ -16,7 +16,7 @@ connect = sqlite3.connect
 
 
 def otherwise_built(monkeypatch: pytest.MonkeyPatch, deaf: str = "") -> None:
-    """Let SQLite begin as careless as it can be built, and grant one setting never."""
+    """Build SQLite with its most careless defaults, and let one setting never take effect."""
 
     class Careless(sqlite3.Connection):
         def execute(self, sql: str, *values: Any) -> sqlite3.Cursor:
@@ -34,7 +34,7 @@ def otherwise_built(monkeypatch: pytest.MonkeyPatch, deaf: str = "") -> None:
 
 
 def asked(store: Store, setting: str) -> Any:
-    """Ask the store's own connection how a setting stands."""
+    """Ask the store's own connection for a setting."""
     db = store.file.db
     assert db is not None
     return db.execute(f"PRAGMA {setting}").fetchone()[0]
@@ -103,7 +103,7 @@ def test_a_writable_console_connection_is_refused(
 def test_a_log_migrated_by_a_reader_is_marked_as_checked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """So that the next writer need not read all of a large log that nobody touched since."""
+    """Otherwise the next writer would check a large log again although it has not changed."""
     with monkeypatch.context() as older:
         older.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         with Store.open(tmp_path) as store:

@@ -277,7 +277,7 @@ def test_the_game_has_begun_after_all_required_behaviours(activity: Activity) ->
 def test_a_joke_without_effect_is_inferred_from_a_later_stage(
     jokes: dict[int, bool],
 ) -> None:
-    """The log says of each joke that the robot told it; only the stages say whether it counts."""
+    """The log records each joke that the robot told; only the stages show whether it counts."""
     truth, followed = begun(), begun()
     for call in range(1, 30):
         told = [("call number", True)]

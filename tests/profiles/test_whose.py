@@ -45,7 +45,7 @@ def test_the_selector_means_the_first_of_several_people(game: DeclaredGame) -> N
     assert ("whose guess is right", "cat") in joint_state(game).whom
     game.observe(
         "guess", "cat", "a fish"
-    )  # a person who changes the answer becomes the last to have it
+    )  # a person who changes the answer goes to the end of the order
     assert (game.whom(RIGHT), game.whom(WRONG)) == ("ann", "ben")
     game.observe("here", "ann", "no")
     assert game.whom(RIGHT) is None
@@ -113,4 +113,4 @@ def test_a_stage_about_a_selected_person_sees_only_the_selected_value(tmp_path: 
     found = read_declared(tmp_path / "buzz.toml").situations
     seen = {stage: [one.user_state for one in found if one.stage == stage] for stage, *_ in found}
     assert seen["right"] == ["guess is right"]
-    assert len(seen["wrong"]) == 3  # not everybody can be meant: perhaps nobody is
+    assert len(seen["wrong"]) == 3  # three states, as perhaps nobody is meant

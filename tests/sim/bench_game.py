@@ -1,4 +1,4 @@
-"""A robot that knows what is true, and plays on the bench's world by Table II: a peer for tests."""
+"""A robot that knows the truth, and plays in the bench's world by Table II: a peer for tests."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ TICK = 0.1
 
 
 def bench(seed: int = 1, count: int = 4, *, exact: bool = True) -> BenchWorld:
-    """Make a world with sample people, in which nothing has begun."""
+    """Make a world with sample people, before any game."""
     odometer = EXACT if exact else None
     return BenchWorld(ROOM, ROBOT, ACTIVITY, load_people(count), seed=seed, odometer=odometer)
 
 
 def say(world: BenchWorld, behaviour: str, name: str = "", *numbers: int) -> None:
-    """Let the robot say what a behaviour has to be said with, to its end."""
+    """Let the robot speak a behaviour's words to their end."""
     text = ACTIVITY.fill(ACTIVITY.behaviours[behaviour].speech["neutral"], name, numbers)
     world.say(text)
     while text not in world.said:
@@ -38,7 +38,7 @@ def say(world: BenchWorld, behaviour: str, name: str = "", *numbers: int) -> Non
 
 
 def drive_to(world: BenchWorld, place: str, seconds: float = 60.0) -> bool:
-    """Drive straight to a place and face the people; say whether it came to that."""
+    """Drive straight to a place and face the people; return whether that worked."""
     goal = world.room.stand(place, world.people.ids)
     until = world.now + seconds
     while world.now < until:
@@ -59,7 +59,7 @@ def drive_to(world: BenchWorld, place: str, seconds: float = 60.0) -> bool:
 
 @dataclass
 class Player:
-    """Plays one game after the other, and counts situations."""
+    """Plays games in turn, and counts situations."""
 
     world: BenchWorld
     tracker: Tracker = field(init=False)
@@ -82,7 +82,7 @@ class Player:
         assert most < 400, "no end"
 
     def _look(self) -> None:
-        """See signs, and the card beside the robot."""
+        """Look at the signs, and at the card beside the robot."""
         world, tracker = self.world, self.tracker
         assert set(tracker.queue) <= set(world.asking), "a sign came down without a reason"
         for person in world.asking:

@@ -1,4 +1,4 @@
-"""Guided games as the tests play them: by a good teacher, and by one who makes mistakes."""
+"""Guided games in tests: by a good teacher, and by one who makes mistakes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LEAVING = {s for s in LANTERNS.situations if s.stage == "leaving"}
 
 @dataclass(frozen=True)
 class Turn:
-    """One step of a game: what was done, what came of it, and what there was to see then."""
+    """One step of a game: the action, its outcome, and what was visible then."""
 
     step: Step
     outcome: Outcome
@@ -52,7 +52,7 @@ def turn(world: GuidedWorld, action: Action) -> Turn:
 
 
 def play(world: GuidedWorld, most: int = 200) -> Iterator[Turn]:
-    """Play to the end as the activity expects it."""
+    """Play the expected behaviours to the end."""
     for _ in range(most):
         if world.over:
             return
@@ -90,9 +90,9 @@ MISTAKES = st.lists(
 
 
 def mistaken(world: GuidedWorld, mistakes: Sequence[Mistake], *but: str) -> Iterator[Action]:
-    """Yield the actions of a teacher who makes these mistakes, and then none, to the end.
+    """Yield the actions of a teacher who makes these mistakes first, and then none, to the end.
 
-    A mistake is any behaviour `but` some, and but those with which the game ends.
+    A mistake is any behaviour except those in `but` and those that end the game.
     """
     activity, people = world.activity, world.people
     ends = {rule.behaviour for rule in activity.stage_rules if rule.condition == "after"}

@@ -1,4 +1,4 @@
-"""Faults on the bench: injected into its devices and people, and mended."""
+"""Faults on the bench: injected into its devices and people, and repaired."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RULES = {rule.code: rule for rule in load_faults(ROBOT).rules}
 
 
 def opened(seed: int = 1) -> BenchWorld:
-    """Make a world in which a game was greeted."""
+    """Make a world after the greeting of a game."""
     world = bench(seed)
     world.begin()
     say(world, "greeting")
@@ -26,7 +26,7 @@ def opened(seed: int = 1) -> BenchWorld:
 
 
 def asks(world: BenchWorld, person: str, marked: int = 0, called: int = 0) -> None:
-    """Let somebody's sign be up, with such a card, and the robot be there."""
+    """Put a person's sign up, with this card, and the robot beside them."""
     sitter = world.people.sitters[person]
     sitter.asks_since = world.now
     sitter.player.marked, sitter.player.called = marked, called
@@ -34,7 +34,7 @@ def asks(world: BenchWorld, person: str, marked: int = 0, called: int = 0) -> No
 
 
 def ask_aloud(world: BenchWorld, code: str, name: str = "") -> None:
-    """Let the robot ask for help about a fault, to the end of the sentence and some time."""
+    """Let the robot ask for help with a fault, to the end of the sentence and some time after."""
     world.say(RULES[code].fill(RULES[code].aloud, name=name, object=ACTIVITY.object))
     world.step(20.0)
 
@@ -152,7 +152,7 @@ class TestDriving:
         world = opened()
         world.inject("path-detour")
         world.step(5.0)
-        assert not world.floor.dropped  # it stands
+        assert not world.floor.dropped  # it stands still
         assert not drive_to(world, "user2", 12.0)  # it drives straight, and bumps
         (chair,) = world.floor.dropped
         assert world.truth()["faults"][0]["shown"] and world.wheels.bumped
@@ -209,7 +209,7 @@ class TestPeople:
         assert world.people.sitters["user2"].hides
         say(world, "move card closer", "User 2")
         world.step(25.0)
-        assert world.people.sitters["user2"].hides  # it was moved, and still is not seen
+        assert world.people.sitters["user2"].hides  # the card was moved, but is still hidden
         while world.people.sitters["user2"].hides:
             ask_aloud(world, "card-out-of-sight", "User 2")
         assert "card-out-of-sight" not in world.faults

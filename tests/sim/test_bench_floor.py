@@ -46,7 +46,7 @@ class TestRays:
     def test_a_ray_hits_a_circle_only_on_its_line(
         self, way: float, far: float, radius: float, aside: float
     ) -> None:
-        # `aside` is how far the ray passes its middle, in its radii.
+        # `aside` is the distance of the ray from its middle, in its radii.
         x, y = (
             far * cos(way) - aside * radius * sin(way),
             far * sin(way) + aside * radius * cos(way),
@@ -114,7 +114,7 @@ class TestWheels:
             now += 0.05
             one.step(now, 0.05)
         assert one.forward > 0
-        for _ in range(10):  # .5 m/s take .31 s
+        for _ in range(10):  # it reaches .5 m/s after .31 s
             now += 0.05
             one.step(now, 0.05)
         there = one.pose

@@ -27,7 +27,7 @@ WAYS = [
 
 
 def opened(seed: int = 1) -> BenchWorld:
-    """Make a world in which a game was greeted."""
+    """Make a world after the greeting of a game."""
     world = bench(seed)
     world.begin()
     say(world, "greeting")
@@ -35,7 +35,7 @@ def opened(seed: int = 1) -> BenchWorld:
 
 
 def asks(world: BenchWorld, person: str = "user2") -> None:
-    """Let somebody's sign be up, and the robot be there, who can see the card."""
+    """Put a person's sign up, and the robot beside them, in sight of the card."""
     world.people.sitters[person].asks_since = world.now
     assert drive_to(world, person)
     world.people.sitters[person].hides = ""
@@ -112,7 +112,7 @@ class TestPlaying:
         before = [s.player.marked for s in world.people.sitters.values()]
         world.step(6.0)
         after = [s.player.marked for s in world.people.sitters.values()]
-        assert before != after  # the last one is marked only now
+        assert before != after  # only now is the last one marked
         players = [s.player for s in world.people.sitters.values()]
         missed = sum((p.called & ~p.marked).bit_count() for p in players)
         assert 0 < missed < 0.3 * sum(p.called.bit_count() for p in players)

@@ -40,7 +40,7 @@ class Peer:
     def __init__(self, bench: DeviceServers, wires: dict[str, Any]) -> None:
         self.bench, self.world, self.wires = bench, bench.world, wires
         self.clock = SteppedClock()
-        # What counts the bench's time has a link of its own: it answers when the robot's is lost.
+        # Stepping the bench has its own link, which still answers when the robot's is lost.
         self.timing = Rosbridge(wires["rosbridge"], clock=self.clock.now)
         self.link = Rosbridge(wires["rosbridge"], clock=self.clock.now)
         self.diagnostics = RosDiagnostics(self.link)
@@ -52,7 +52,7 @@ class Peer:
         self._scans = 0
 
     async def start(self) -> None:
-        """Switch all of it on, and wait until it has been heard of."""
+        """Open every device, and wait for its first data."""
         await self.timing.start()
         for one in (self.diagnostics, self.base, self.arms, self.voice, self.button, self.laser):
             await one.start()
@@ -67,14 +67,14 @@ class Peer:
         return 0 if self.laser.scan is None else self.laser.scan.seq
 
     async def close(self) -> None:
-        """Switch all of it off."""
+        """Close every device."""
         for one in (self.laser, self.button, self.voice, self.arms, self.base, self.diagnostics):
             await one.close()
         await self.link.close()
         await self.timing.close()
 
     async def passes(self, seconds: float, twist: Twist | None = None) -> None:
-        """Let the bench's time pass, driving meanwhile."""
+        """Step the bench while the robot drives."""
         for _ in range(round(seconds / 0.05)):
             if twist is not None:
                 await self.base.drive(twist)
@@ -82,7 +82,7 @@ class Peer:
             await self.clock.sleep(0.05)
 
     async def while_passing(self, work: Any, most: float = 30.0) -> Any:
-        """Let the bench's time pass until something is done, and return what it gave."""
+        """Step the bench until a task is done, and return its result."""
         task = asyncio.ensure_future(work)
         for _ in range(round(most / 0.05)):
             await self.clock.sleep(0.05)
@@ -106,7 +106,7 @@ async def served(
 
 @asynccontextmanager
 async def played() -> AsyncIterator[Peer]:
-    """Serve a bench, and let a robot's drivers be switched on at it."""
+    """Serve a bench, and open a robot's drivers on it."""
     async with served() as (one, wires):
         one.do({"do": "begin"})
         peer = Peer(one, wires)

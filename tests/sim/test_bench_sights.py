@@ -59,7 +59,7 @@ class TestCards:
             scene = HeadScene("card", PEOPLE[visit], 1, visit, 7, 0b11111, hides)
             frame = picture(head.frame(scene))
             sharp = measure(frame, 1, 0.0).sharpness
-            assert sharp is not None and sharp > 0.2  # the camera is not what is wrong
+            assert sharp is not None and sharp > 0.2  # the camera itself is not at fault
             reading = reader.read(frame)
             called = set(reader.deck.numbers)
             assert reader.state(reading, ACTIVITY.user_states, called) == ACTIVITY.unread

@@ -31,7 +31,7 @@ async def test_the_tablet_shows_each_picture_until_it_is_switched_off(
     await screen.show(Picture("for whoever comes"))
     tablet.on = True
     await until(lambda: tablet.picture["text"] == "for whoever comes")
-    # The robot's process ends, and begins anew; the tablet is still paired.
+    # The robot's process ends, and another one begins; the tablet is still paired.
     port = screen.port
     await screen.close()
     again = WebChestScreen(port=port, pairing=Pairing(screen.pairing.key, "00000000"))

@@ -173,7 +173,7 @@ def test_the_lookahead_is_bounded_in_states() -> None:
 
 
 class Copies(DeclaredGame):
-    """A game that counts its copies, and the copies of copies."""
+    """A game that counts its copies, and their copies."""
 
     made = 0
 

@@ -20,7 +20,7 @@ PEOPLE = ("user1", "user2", "user3")
 
 
 def games(unclear: float, count: int) -> tuple[list[Outcome], int]:
-    """Play games as the file expects; return what came of each step, and how many ended."""
+    """Play games as the file expects; return the outcome of each step, and how many games ended."""
     activity, taught = declared("trivia"), expected_moves(declared("trivia"))
     world = DeclaredWorld(activity, PEOPLE, seed=4, unclear=unclear)
     found, ended = list[Outcome](), 0

@@ -61,7 +61,7 @@ def test_one_game_teaches_the_exact_policy(seed: int, users: int) -> None:
 @pytest.mark.slow
 @pytest.mark.xdist_group("guide")
 def test_a_made_up_activity_is_shown_completely() -> None:
-    """Somebody asks at its end in every other game, since one game has but one end."""
+    """A person asks at its end in every second game, since each game has only one end."""
     for users in (1, 2, 5, 8):
         for seed in SEEDS:
             lacking = set(LANTERNS.situations) - shown(guided("lanterns", seed, users))
@@ -79,7 +79,7 @@ def test_two_games_teach_the_exact_policy_of_an_activity_with_two_ends(users: in
 
 
 def varied(name: str) -> Activity:
-    """Return Bingo with another deck, other precedence, or another number of calls to a joke."""
+    """Return Bingo with another deck, precedence, or number of calls before a joke."""
     states = {state.checker: state for state in BINGO.user_states}
     rules = BINGO.stage_rules
     match name:
@@ -155,7 +155,7 @@ def test_a_win_comes_soon_after_everything_else_was_shown() -> None:
 
 @pytest.mark.xdist_group("guide")
 def test_requests_come_one_at_a_time_with_two_calls_between() -> None:
-    """The others are left in peace while somebody is visited, so each visit ends at the front."""
+    """Nobody else asks during a visit, so each visit ends at the front."""
     for turns in games():
         calls, closed_at = 0, 0
         for before, after in pairwise(turns):

@@ -32,7 +32,7 @@ NUMBERS_LEFT = 7
 
 
 def check_order(world: GuidedWorld) -> None:
-    """Check that no card is seen to win while anything else lacks and can be shown."""
+    """Check that no winning card is seen while another situation is missing and possible."""
     left = 75 - len(world.scene().called)
     if world.observe().situation.user_state == "bingo" and left >= NUMBERS_LEFT:
         lacking = [s for s in world.plan.lacking if s.stage != "end" and s.user_state != "bingo"]
@@ -78,13 +78,13 @@ def test_a_teacher_who_only_calls_numbers_sees_no_win_and_one_request(users: int
         for before, after in pairwise(called):
             assert before.asking <= after.asking
         assert not any(BINGO.deck.wins(p.marked) for p in world.players.values())
-        list(play(world))  # and even now the game can be brought to an end
+        list(play(world))  # even now the game can be brought to an end
 
 
 @pytest.mark.parametrize("users", [1, 2, 4, 8])
 @pytest.mark.parametrize("early", [20, 40, 55])
 def test_many_numbers_called_too_early_leave_enough_to_show(users: int, early: int) -> None:
-    """Nobody asks before the greeting, and what was called by then cannot be missed any more."""
+    """Nobody asks before the greeting, and numbers called by then can no longer be missed."""
     call = BINGO.action(BINGO.behaviours["call number"], None, None)
     for seed in range(12):
         world = GuidedWorld(BINGO, IDS[:users], seed=seed)
@@ -101,7 +101,7 @@ def test_many_numbers_called_too_early_leave_enough_to_show(users: int, early: i
 
 @pytest.mark.parametrize("users", [1, 4])
 def test_a_long_wait_keeps_the_planned_card_state(users: int) -> None:
-    """While somebody waits, 30 numbers are called; then their card must be as it was wanted."""
+    """While a person waits, 30 numbers are called; then the card must be in its planned state."""
     call = BINGO.action(BINGO.behaviours["call number"], None, None)
     for seed in range(30):
         world = GuidedWorld(BINGO, IDS[:users], seed=seed)

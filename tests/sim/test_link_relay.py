@@ -29,9 +29,9 @@ class Certain(Random):
     ("lost", "size", "late"),
     [
         ("0", 10, 0.05),
-        ("1", 10, 0.05 + RESEND_SECONDS),  # nothing follows it: noticed by the time-out alone
-        ("110", 10, 0.05 + 3 * RESEND_SECONDS),  # lost again: twice as long again
-        ("0001", 4 * PACKET, 0.05 + 0.1),  # three follow it: one round trip
+        ("1", 10, 0.05 + RESEND_SECONDS),  # nothing follows it, so only the time-out shows the loss
+        ("110", 10, 0.05 + 3 * RESEND_SECONDS),  # lost again: each time-out is twice as long
+        ("0001", 4 * PACKET, 0.05 + 0.1),  # three packets follow it: one round trip
         ("01", 4 * PACKET, 0.05 + RESEND_SECONDS),
         ("", 0, 0.05),
     ],
@@ -49,7 +49,7 @@ def test_the_loss_rate_matches_the_setting() -> None:
 
 @asynccontextmanager
 async def echo() -> AsyncIterator[tuple[str, list[asyncio.StreamWriter]]]:
-    """Serve what comes back as it was, and keep the connections."""
+    """Serve an echo, and keep the connections."""
     there: list[asyncio.StreamWriter] = []
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:

@@ -74,7 +74,7 @@ async def test_a_slow_viewer_misses_pictures_but_gets_the_newest(server: MjpegSe
     count, large = 60, bytes(200_000)
     for number in range(count):
         server.push("/head", large + bytes([number]))
-        assert (await quick.see())[-1] == number  # who keeps up sees every one
+        assert (await quick.see())[-1] == number  # a fast client sees every one
     seen = [(await slow.see())[-1]]
     while seen[-1] != count - 1:
         seen.append((await slow.see())[-1])

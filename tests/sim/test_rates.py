@@ -88,7 +88,7 @@ def test_the_rate_of_requests_matches_the_model_and_rises_with_errors(
     asked = waited = 0
     for _ in range(400):
         world.execute(action("greeting"))
-        for _ in range(10):  # by when everybody has missed a number, if all are missed
+        for _ in range(10):  # enough for everybody to miss a number, if all are missed
             world.execute(action("call number"))
         world.tracker.queue.clear()
         for _ in range(20):

@@ -31,7 +31,7 @@ def expected(made: SimulatedWorld) -> Action:
 
 
 def game(made: SimulatedWorld) -> list[tuple[ActivityState, Action, Outcome]]:
-    """Play the game that was begun as the activity expects it."""
+    """Play the expected behaviours of the current game."""
     taken = []
     while not made.over:
         state, action = made.observe(), expected(made)
@@ -68,7 +68,7 @@ def test_another_seed_gives_other_games() -> None:
 
 
 def test_the_games_of_seed_one_never_change() -> None:
-    """Change this digest only with a reason: demonstrations kept with other games break off."""
+    """Change this digest only with a reason: demonstrations of the earlier games break off."""
     made = world(1)
     steps = []
     for _ in range(20):

@@ -31,7 +31,7 @@ def expected(world: World) -> Action:
 
 
 def game(world: SimulatedWorld) -> Iterator[Taken]:
-    """Play the game that was begun as the activity expects it, step by step."""
+    """Play the expected behaviours of the current game, step by step."""
     while not world.over:
         state, action = world.observe(), expected(world)
         yield state, action, world.execute(action), world.observe()

@@ -1,4 +1,4 @@
-"""A policy with one wrong decision comes to an end, or Tangy asks: it never goes on for ever."""
+"""A policy with one wrong decision ends, or Tangy asks: it never goes on for ever."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST = 300
 
 
 def goes_on(activity: DeclaredActivity, wrong: Situation, behaviour: str) -> bool:
-    """Return whether a game does not end, and Tangy does not ask, within `MOST` steps."""
+    """Return whether a game neither ends nor makes Tangy ask within `MOST` steps."""
     moves = expected_moves(activity)
     moves.shown[wrong] = behaviour
     world = DeclaredWorld(activity, activity.teams or PEOPLE, seed=1)
