@@ -22,7 +22,7 @@ SMALL = {
 
 @dataclass(frozen=True)
 class Ran:
-    """What one scenario left: its document, its page, and the folder it was run in."""
+    """The results of one scenario: its document, its page, and its folder."""
 
     document: dict[str, Any]
     page: str
@@ -31,7 +31,7 @@ class Ran:
 
 
 def run(*words: str) -> subprocess.CompletedProcess[str]:
-    """Run the program to its end, with nobody looking."""
+    """Run the program to its end, without a terminal."""
     return subprocess.run(  # noqa: S603 - our own interpreter
         [*TANGY, *words], capture_output=True, text=True, timeout=120, check=False
     )
@@ -39,10 +39,10 @@ def run(*words: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="session", params=[1, 2])
 def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Ran:
-    """One scenario after another."""
+    """Each scenario in turn."""
     shared = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
-        shared = shared.parent  # of all workers of this session: the first one runs it
+        shared = shared.parent  # shared by all workers of this session: the first one runs it
     folder = shared / f"scenario-{request.param}"
     folder.mkdir(exist_ok=True)
     words = ("experiment", str(request.param), *SMALL[request.param], "--jobs", "1")

@@ -1,4 +1,4 @@
-"""Pieces of work for the tests of sweeps, where processes of joblib can import them."""
+"""Tasks for the tests of sweeps, where processes of joblib can import them."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ from tangy_tui.experiments.sweep import Where
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.text.comparison import compare
 
-pytestmark = pytest.mark.xdist_group("scenario three")  # what is played is played once
+pytestmark = pytest.mark.xdist_group("scenario three")  # games are played only once
 
 BOOK = load_faults(load_robot())
 PAPER = {row["recovery"]: row["instances"] for row in published.SCENARIO_THREE["faults"]}
@@ -91,8 +91,8 @@ def test_a_diagnosis_is_compared_with_the_faults_present_then() -> None:
     unseen = Induced(KINDS["request-withdrawn"], 20, 0.0)
     told = [
         fault("emergency-stop", 5),
-        fault("emergency-stop", 6),  # it was lifted before
-        fault("voice-dead", 9),  # while the arm is not known yet
+        fault("emergency-stop", 6),  # the button was released before
+        fault("voice-dead", 9),  # while the arm's fault is not known yet
         fault("arm-failed", 9),
         fault("arm-failed", 12),
         replace(fault("unknown-situation", 13), evidence={"situation.shown": False}),

@@ -128,12 +128,12 @@ def test_ctrl_c_ends_at_once_and_explains_how_to_resume(tmp_path: Path, cores: i
         deadline = monotonic() + 30
         while monotonic() < deadline and not _kept(tmp_path):
             sleep(0.05)
-        os.killpg(child.pid, signal.SIGINT)  # a terminal sends it to everybody who works
+        os.killpg(child.pid, signal.SIGINT)  # a terminal sends it to the whole process group
         begun = monotonic()
         said, complained = child.communicate(timeout=20)
         assert monotonic() - begun < 5
     finally:
-        if child.poll() is None:  # it would hold up all that comes after this test
+        if child.poll() is None:  # it would hold up the following tests
             os.killpg(child.pid, signal.SIGKILL)
             child.communicate()
     assert (child.returncode, said) == (130, "")
@@ -198,9 +198,9 @@ def test_progress_is_shown_on_a_terminal_and_not_in_the_document(tmp_path: Path)
     mine, theirs = pty.openpty()
     seen = b""
 
-    def watch() -> None:  # or a slow machine's progress fills the terminal, and nobody goes on
+    def watch() -> None:  # else a slow machine's progress fills the terminal and blocks the program
         nonlocal seen
-        with suppress(OSError):  # nobody writes to it any more
+        with suppress(OSError):  # the program has closed it
             while chunk := os.read(mine, 65536):
                 seen += chunk
 

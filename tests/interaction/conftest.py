@@ -1,4 +1,4 @@
-"""What the tests of facilitation share: a learnt policy, and games played with it."""
+"""Fixtures of the tests of facilitation: a learned policy, and games played with it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def policy(
 def facilitate(
     activity: Activity, policy: Policy, people: tuple[Person, ...], store: Store
 ) -> Callable[..., Facilitation]:
-    """Make a facilitation: (seed, policy, activity) -> it."""
+    """Make a facilitation: (seed, policy, activity) -> facilitation."""
 
     def make(
         seed: int = 1, policy: Policy = policy, activity: Activity = activity, users: int = 4

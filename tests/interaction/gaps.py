@@ -1,4 +1,4 @@
-"""Demonstrations for tests: put into a log, with a situation left out or answered otherwise."""
+"""Demonstrations for tests: logged, without a situation or with another answer to it."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def learnt(
     demonstrations: Iterable[Demonstration],
     settings: ForestSettings = EXACT,
 ) -> Policy:
-    """Log demonstrations and learn a policy from all that are in the log."""
+    """Log demonstrations and learn a policy from all those in the log."""
     with store.transaction():
         for demonstration in demonstrations:
             keep(store, demonstration)

@@ -39,7 +39,7 @@ IDS = ("user1", "user2")
 
 
 def asking(store: Store, activity: Activity, policy: Policy, seed: int = 1) -> Facilitation:
-    """Make a run of games in which a teacher can be asked."""
+    """Make a run of games with a teacher who can be asked."""
     return Facilitation(
         SimulatedWorld(activity, IDS, seed=seed),
         policy,
@@ -63,7 +63,7 @@ def until_asked(facilitation: Facilitation, games: int = 20) -> Unsure:
 
 
 def reply(facilitation: Facilitation, activity: Activity, teacher: str = "ann") -> list[GameEvent]:
-    """Answer as the activity expects."""
+    """Give the activity's expected answer."""
     question = facilitation.question
     assert question is not None
     behaviour = activity.behaviours[activity.expected[question.state.situation]]
@@ -72,7 +72,7 @@ def reply(facilitation: Facilitation, activity: Activity, teacher: str = "ann") 
 
 
 def found(activity: Activity, behaviour: str) -> Situation:
-    """Return the situation in which something is expected."""
+    """Return the situation in which this behaviour is expected."""
     return next(s for s in activity.situations if activity.expected[s] == behaviour)
 
 
@@ -252,7 +252,7 @@ def test_an_unstorable_answer_loses_nothing(
     assert facilitation.policy is policy
     assert facilitation.persuasion.beliefs == beliefs
     assert not facilitation.over
-    while not facilitation.over:  # the log can be written again, and the game goes on
+    while not facilitation.over:  # the log is writable again, and the game goes on
         facilitation.step()
         if facilitation.question is not None:
             reply(facilitation, activity)
@@ -290,7 +290,7 @@ def test_each_missing_situation_is_asked_about_once(
 
 
 def disagreeing(store: Store, activity: Activity, cover: Cover) -> tuple[Situation, Policy]:
-    """Let ben joke in the first situation, against everybody else; return it and the policy."""
+    """Let ben tell a joke in the first situation, against all others; return it and the policy."""
     shown = cover("bingo", 1, 4)
     where = activity.situations[0]
     other = otherwise(shown[0], where, "joke", "ben")

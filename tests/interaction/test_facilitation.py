@@ -30,7 +30,7 @@ Make = Callable[..., Facilitation]
 
 
 def without(policy: Policy, situation: Situation, **change: object) -> Policy:
-    """The same policy, but for its decision in one situation."""
+    """The same policy, except for its decision in one situation."""
     decision = replace(policy.decide(situation), **change)  # type: ignore[arg-type]
     return replace(policy, table={**policy.table, situation: decision})
 

@@ -212,7 +212,7 @@ def test_live_and_recalled_posteriors_agree_for_any_method(
 def test_the_order_of_late_feedback_does_not_matter(
     log: Store, clock: Clock, told: list[tuple[str, bool]], rng: Random
 ) -> None:
-    """Also where beliefs fade: an answer counts from when its request was put."""
+    """Also if beliefs fade: an answer counts from the time of its request."""
     in_time, late = next(fresh), next(fresh)
     memory = PersonModels(log, STRATEGIES, PersuasionConfig(forgetting=0.9))
     with log.transaction():

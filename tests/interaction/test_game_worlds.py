@@ -60,7 +60,7 @@ def test_staff_can_set_the_world_of_a_game(tmp_path: Path) -> None:
         worlds = GameWorlds(store)
         worlds.set("a", LIVE, "Ada")
         worlds.set("b", BENCH)
-        worlds.set("b", BENCH)  # it is that already: nothing is logged
+        worlds.set("b", BENCH)  # no change: nothing is logged
         assert dict(worlds.all) == dict(GameWorlds(store).all) == {"a": LIVE, "b": BENCH}
         assert [event.body["world"] for event in store.events("game world set")] == [LIVE, BENCH]
         assert [believed(store, world) for world in PLAYED_WORLDS] == [(1, 1), (3, 1), (6, 2)]

@@ -1,4 +1,4 @@
-"""The laws of each method of persuasion; the default is exactly that of the paper."""
+"""The laws of each method of persuasion; the default is exactly the paper's."""
 
 from __future__ import annotations
 

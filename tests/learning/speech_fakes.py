@@ -1,4 +1,4 @@
-"""What stands in for a microphone, for the decoder and for its process in the tests of speech."""
+"""Stand-ins for a microphone, the decoder and its process in the tests of speech."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class FakeSource:
 
 
 class FakeRecogniser:
-    """Hears letters; silence after them ends an utterance where its end is looked for."""
+    """Hears letters; silence after them ends an utterance if it looks for the end."""
 
     made: list[FakeRecogniser]
 
@@ -83,7 +83,7 @@ class FakeRecogniser:
         self.failures: list[Exception] = []
         self.wanted: DecoderVocabulary | None = None
         self.closed = False
-        self.decoding = asyncio.Event()  # cleared, it takes as long as the test likes
+        self.decoding = asyncio.Event()  # while it is clear, decoding hangs
         self.decoding.set()
         self.made.append(self)
 
@@ -193,7 +193,7 @@ for line in sys.stdin.buffer:
 
 
 class Workers:
-    """Processes that stand in for the decoder's, one after the other, each by its plan."""
+    """Stand-ins for the decoder's processes, in turn, each with its plan."""
 
     def __init__(self, folder: Path, *plans: dict[str, Any]) -> None:
         self._folder = folder
@@ -206,6 +206,6 @@ class Workers:
 
     @property
     def heard(self) -> list[bytes]:
-        """What each of them was given of its last utterance."""
+        """The sound that each of them got of its last utterance."""
         count = len(list(self._folder.glob("heard.*")))
         return [(self._folder / f"heard.{number}").read_bytes() for number in range(count)]

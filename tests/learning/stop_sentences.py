@@ -1,8 +1,8 @@
 """Sentences with which people stop the robot or the game, and others that only mention stopping.
 
-Those of the first two lists were written before the rules that tell them apart, and the rules
-were made on the ones at even places (the first, the third ...). Those of the other two lists were
-written afterwards; where they showed what was missing, it was added.
+The first two lists were written before the rules that tell them apart, and the rules
+were made on their sentences at even places (the first, the third ...). The other two lists were
+written afterwards; where they showed a gap, the rules were extended.
 """
 
 from __future__ import annotations

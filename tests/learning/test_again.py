@@ -195,7 +195,7 @@ def test_the_log_agrees_with_the_session_after_any_steps_undos_and_redos(
     with TemporaryDirectory() as folder, opened(Path(folder)) as workspace:
         teaching = workspace.teaching("Ada", seed)
         teaching.begin()
-        trail: list[Demonstration] = []  # what redo must lead to
+        trail: list[Demonstration] = []  # the states that redo must lead to
         for command in commands:
             before = teaching.demonstration
             match command:

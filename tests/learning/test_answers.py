@@ -1,4 +1,4 @@
-"""Yes and no in the words of people; nothing else is read as a yes."""
+"""Yes and no in the words of people; no other answer counts as a yes."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ COMMAND, OTHER = (
 
 
 def scores(commands: list[float], others: list[float]) -> list[CalibrationScore]:
-    """Commands that are understood right with these scores, and other sentences."""
+    """Commands that are understood correctly with these scores, and other sentences."""
     said = [CalibrationScore(told, COMMAND, True) for told in commands]
     return said + [CalibrationScore(told, OTHER, False) for told in others]
 

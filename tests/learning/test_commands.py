@@ -276,7 +276,7 @@ class TestUnderstanding:
             BOOK.suggestions("\ufdfa" * words)
             return process_time() - begun
 
-        capped = min(seconds(1_000) for _ in range(3))  # longer already than is looked at
+        capped = min(seconds(1_000) for _ in range(3))  # longer than the limit
         assert min(seconds(100_000) for _ in range(3)) < 20 * capped
 
 

@@ -1,4 +1,4 @@
-"""Conflicts are all found, across demonstrations and teachers, and resolved by one answer."""
+"""All conflicts are found, across demonstrations and teachers, and one answer resolves each."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ FEW = ForestSettings(trees=5)
 def showing(
     *rows: tuple[Situation, str], teacher: str = "Ada", id: str = "made", first: int = 1
 ) -> Demonstration:
-    """Make a demonstration of just these rows, with steps numbered from `first`."""
+    """Make a demonstration of only these rows, with steps numbered from `first`."""
     steps = []
     for number, (situation, behaviour) in enumerate(rows, first):
         state = ActivityState(number, situation, FRONT, None, ())
@@ -44,7 +44,7 @@ def showing(
 
 
 def numbered(shown: list[Demonstration]) -> list[Demonstration]:
-    """Give every step a number of its own, as the log does."""
+    """Give every step its own number, as the log does."""
     ids = count(1)
     return [replace(d, steps=tuple(replace(s, id=next(ids)) for s in d.steps)) for d in shown]
 
@@ -81,7 +81,7 @@ def test_every_wrong_answer_of_three_percent_is_found_and_resolved(
     order = sorted(range(len(rows)), key=lambda n: (often[rows[n][0]], rng.random()))
     spared: dict[
         Situation, int
-    ] = {}  # one right answer to each situation: without one there is nothing to disagree
+    ] = {}  # each situation has a right answer: without one, answers cannot conflict
     for number in order:
         spared.setdefault(rows[number][0], number)
     free = [n for n in (order if rarest else order[::-1]) if n not in spared.values()]

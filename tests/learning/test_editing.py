@@ -124,7 +124,7 @@ def test_undo_starts_with_the_latest_edit(editor: Editor) -> None:
     assert editor.undo().done.what == "delete"
     assert editor.undo().done.what == "merge"
     assert used(editor.library) == before
-    assert editor.library.find("new1").hidden == "undone"  # policies may rest on it
+    assert editor.library.find("new1").hidden == "undone"  # policies may depend on it
     with pytest.raises(NotPossible, match="no change"):
         editor.undo()
 
@@ -217,7 +217,7 @@ def test_demonstrations_are_found_by_number_id_or_prefix(editor: Editor) -> None
     assert library.find("1") == library.find("aaa") == library.entries["aaa"]
     assert library.number("ccc") == 3
     with pytest.raises(NoDemonstration):
-        library.find("aa")  # too short to be sure
+        library.find("aa")  # too short to be unique
 
 
 def test_each_activity_has_its_own_edits(store: Store, lanterns: Activity, editor: Editor) -> None:
@@ -277,7 +277,7 @@ def empty_store() -> Iterator[Store]:
 
 
 def change(editor: Editor, what: str, one: int, other: int) -> bool:
-    """Try a change; say whether it was possible."""
+    """Try a change; return whether it was possible."""
     try:
         match what:
             case "delete" | "restore":
@@ -304,7 +304,7 @@ def seen(editor: Editor) -> object:
 
 
 def editor_of_three(store: Store) -> Editor:
-    """Log three demonstrations, two of which have something in common."""
+    """Log three demonstrations, two of which share steps."""
     logged(store, "aaa", ["greeting", "joke", "encourage"])
     logged(store, "bbb", ["joke", "joke"])
     logged(store, "ccc", ["greeting"])

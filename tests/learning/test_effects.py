@@ -21,7 +21,7 @@ GAMES = 100
 
 
 def watch(activity: Activity, seed: int, users: int = 4) -> list[Seen]:
-    """Return every transition of games that go as they should."""
+    """Return every transition of correct games."""
     world = SimulatedWorld(activity, [f"user{n + 1}" for n in range(users)], seed=seed)
     seen: list[Seen] = []
     for _ in range(GAMES):

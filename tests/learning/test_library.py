@@ -45,7 +45,7 @@ FEW = ForestSettings(trees=5)
 
 @pytest.fixture
 def shown(store: Store, demonstrate: Demonstrate) -> list[Demonstration]:
-    """Two demonstrations that are in the log."""
+    """Two logged demonstrations."""
     given = [replace(demonstrate("bingo", seed, 4), teacher=f"Ada {seed}") for seed in (1, 2)]
     for one in given:
         log_demonstration(store, one)
@@ -59,7 +59,7 @@ def learnt(activity: Activity, shown: list[Demonstration], store: Store) -> Poli
 
 
 def with_kept(store: Store, change: Mapping[str, Any]) -> None:
-    """Log the last policy once more, as if it had come out differently."""
+    """Log the last policy once more, as if its result had been different."""
     kept = store.last(PolicyLearnt)
     assert kept is not None
     append_body(store, PolicyLearnt, {**kept.body, **change})
@@ -103,7 +103,7 @@ def test_a_library_is_read_again_only_after_a_change(
         store.append(step)
         assert len(read_demonstrations(store, "bingo")[0].steps) == 0
         raise RuntimeError
-    assert read_demonstrations(store, "bingo") == shown  # what was not kept does not count
+    assert read_demonstrations(store, "bingo") == shown  # the step was rolled back
     store.append(step)
     assert len(read_demonstrations(store, "bingo")[0].steps) == 0
     assert read_library(store, "lanterns").entries == {}

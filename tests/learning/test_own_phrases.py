@@ -1,4 +1,4 @@
-"""A teacher's own phrases: words that Tangy did not understand, and learnt afterwards."""
+"""A teacher's own phrases: words that Tangy did not understand at first, and learned afterwards."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def session(workspace: Workspace, teacher: str = "Ada") -> TeachingSession:
 
 
 def say(teaching: TeachingSession, words: str) -> list[TeachingEvent]:
-    """Say words aloud that mean nothing to Tangy."""
+    """Say words that mean nothing to Tangy."""
     return teaching.apply(Say(words, 0.2, ()))
 
 

@@ -1,4 +1,4 @@
-"""Paraphrases: understood by the learnt intent model, offered, or ignored."""
+"""Paraphrases: understood by the learned intent model, offered, or ignored."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_paraphrases_are_understood_typed_and_spoken(text: str, behaviour: str) 
     assert typed is not None and typed.behaviour == behaviour
     heard = understand(clearly_heard(text), BOOK, USUAL)
     assert isinstance(heard, Say) and heard.commands
-    assert heard.commands[0].behaviour == behaviour  # asked about, or the first choice
+    assert heard.commands[0].behaviour == behaviour  # the question, or the first choice
 
 
 @pytest.mark.parametrize(("text", "user"), VISITS)

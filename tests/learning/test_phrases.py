@@ -117,7 +117,7 @@ class TestLaws:
         before, after = Phrasebook(BINGO, people), Phrasebook(BINGO, more)
         new, now = words_of(clean(name)), meanings(after)
         for words, meant in meanings(before).items():
-            if not (new and words[-len(new) :] == new):  # a name that two share names neither
+            if not (new and words[-len(new) :] == new):  # a name that two people share is ambiguous
                 assert now[words] == meant
         text = data.draw(st.sampled_from(sorted(before.phrases)))
         if not (new and words_of(text)[-len(new) :] == new):

@@ -38,7 +38,7 @@ FEW = ForestSettings(trees=5)
 
 
 def showing(*rows: tuple[Situation, str], id: str = "made") -> Demonstration:
-    """A demonstration of just these situations and behaviours."""
+    """A demonstration of only these situations and behaviours."""
     steps = []
     for situation, behaviour in rows:
         state = ActivityState(0, situation, FRONT, None, ())
@@ -112,7 +112,7 @@ def test_the_policy_depends_only_on_the_rows(activity: Activity) -> None:
     rows = everything(activity)
     one = learn_policy(activity, [showing(*rows)], settings=FEW)
     parts = [showing(*rows[:4], id="a"), showing(*rows[4:], id="b")]
-    grown.cache_clear()  # the same trees grow again, and are not only remembered
+    grown.cache_clear()  # grows the same trees again instead of remembering them
     other = learn_policy(activity, parts, settings=FEW, name="other")
     assert other.table == one.table
     assert other.digest == one.digest

@@ -33,7 +33,7 @@ def book(activity: Activity, people: tuple[Person, ...]) -> Phrasebook:
 
 
 def write(file: Path, number: int = 0) -> Path:
-    """Write a WAV whose first sample is a number, by which the recogniser below knows it."""
+    """Write a WAV whose first sample is a number that identifies it to the recogniser below."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with wave.open(str(file), "wb") as out:
         out.setparams((1, 2, RATE, 0, "NONE", ""))
@@ -61,7 +61,7 @@ class Hears:
 
 
 async def heard(folder: Path, book: Phrasebook, said: dict[str, str]) -> Practice:
-    """Practise on recordings by name, with the words that are heard of each."""
+    """Practise on recordings by name, with the heard words of each."""
     for number, name in enumerate(said, 1):
         write(folder / name, number)
     hears = Hears(dict(enumerate(said.values(), 1)))

@@ -33,7 +33,7 @@ phones = st.lists(st.sampled_from(sorted(PHONES)), min_size=1, max_size=12)
 
 
 def nowhere(program: str) -> None:
-    """Say of every program that it is not installed."""
+    """Report every program as missing."""
 
 
 class TestPhones:
@@ -183,7 +183,7 @@ class TestInThePhrasebook:
         people = [
             Person("user1", "Rosa Lee", "R OW S AH, L EY"),
             Person("user2", "Ada"),
-            Person("user3", "Bob", "B AA, B"),  # not as many words as the name has
+            Person("user3", "Bob", "B AA, B"),  # not as many words as in the name
         ]
         book = Phrasebook(activity, people)
         said = book.pronunciations()

@@ -48,7 +48,7 @@ def test_the_answer_is_computed_locally_if_the_worker_dies(asked_before: bool) -
     beside.ask(1)
     _, pid = beside.answer()
     if asked_before:
-        os.kill(pid, signal.SIGSTOP)  # so that it has not answered when it dies
+        os.kill(pid, signal.SIGSTOP)  # so that it dies without having answered
         beside.ask(21)
         os.kill(pid, signal.SIGKILL)
     else:
@@ -91,7 +91,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 
 def test_the_worker_ends_with_its_parent_process() -> None:
-    # Both hold the pipe that is read here: it closes when the last of them has ended.
+    # Both hold the pipe that the test reads: it closes when the last of them has ended.
     ended = subprocess.run(  # noqa: S603 - this interpreter and our own text
         [sys.executable, "-c", ENDS], stdout=subprocess.PIPE, timeout=60, check=False
     )

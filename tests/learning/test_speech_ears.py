@@ -1,4 +1,4 @@
-"""Ears: they decode exactly the speech that comes while they listen."""
+"""Ears: they decode exactly the speech that arrives while they listen."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ Enter = Callable[..., Room]
 
 @pytest.fixture
 async def enter(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Enter]:
-    """Open ears for a source and a decoder of the test's own; nothing may be left of them."""
+    """Open ears for a given source and decoder; checks that nothing of them remains."""
     opened: list[Room] = []
     FakeRecogniser.made = []
     monkeypatch.setattr(room, "Recogniser", FakeRecogniser)
@@ -316,7 +316,7 @@ class TestOtherPhrases:
     async def test_speech_during_a_change_of_phrases_is_kept(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         people = (*load_people(3), replace(load_people(4)[3], name="Zoe"))
-        here.ears.asking(True)  # ends what is listened for, as a dialog does
+        here.ears.asking(True)  # ends listening, as a dialog does
         here.ears.understand_by(Phrasebook(load_activity("bingo"), people))
         here.ears.asking(False)
         await here.ready("starting")
@@ -530,7 +530,7 @@ class TestHandsFree:
     ) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.decoder.decoding.clear()
-        gap = sound(" ", 0.02)  # less than a piece: what follows it was taken with it
+        gap = sound(" ", 0.02)  # less than a piece, so its piece already holds the following sound
         await here.source.feed(sound("c") + gap + sound("j") + gap + sound("x", 0.3))
         await here.source.feed(sound("x", 0.2) + (b"" if end else sound(" ")))
         if end:

@@ -158,7 +158,7 @@ class TestHearing:
         many = [[0.001 * number, 0.001 * number + 0.01] for number in range(6_000)]
         heard = begin({"found": many})
         await heard.recogniser.start(WANTED)
-        assert len(str(many)) > 1 << 16  # more than a line of asyncio holds if nobody says so
+        assert len(str(many)) > 1 << 16  # longer than asyncio's default limit of a line
         found = await heard.recogniser.pieces(bytes(2 * RATE * 7))
         assert len(found) == 6_000
         assert {len(piece) for piece in found} == {320}
@@ -184,7 +184,7 @@ class TestDeath:
         await heard.said(640, times=2)
         heard.say(*CHUNKS[4:], b"")
         assert (await hearing).seconds == len(WHOLE) / 2 / RATE
-        assert heard.workers.heard[1] == WHOLE  # said again, and the rest: once
+        assert heard.workers.heard[1] == WHOLE  # again from its start, and the rest: once
         assert heard.recogniser.said == WHOLE
         assert heard.recogniser.pid not in (None, first)
         (how,) = heard.told

@@ -21,14 +21,14 @@ def hiss(seconds: float, loud: float, seed: int = 1) -> Samples:
 
 
 def buzz(seconds: float) -> Samples:
-    """A sound that is like a vowel: a hoarse buzz with two formants."""
+    """A sound like a vowel: a hoarse buzz with two formants."""
     time = np.arange(round(seconds * RATE)) / RATE
     pulses = sum(np.sin(2 * np.pi * 120 * n * time) / n for n in range(1, 30))
     return np.asarray(0.15 * pulses * (1 + 0.2 * np.sin(2 * np.pi * 5 * time)))
 
 
 def among_quiet(*lengths: float) -> bytes:
-    """Buzzes of some lengths, with 1.5 s of quiet before, between and after them."""
+    """Buzzes of given lengths, with 1.5 s of quiet before, between and after them."""
     parts = [hiss(1.5, 0.0005)]
     for number, length in enumerate(lengths):
         parts += [buzz(length), hiss(1.5, 0.0005, number + 2)]
@@ -109,7 +109,7 @@ class TestEndpoints:
         assert np.ravel(found) == pytest.approx(np.ravel(expected), abs=0.25)
 
     def test_a_long_recording_is_split(self) -> None:
-        found = pieces(among_quiet(1.0) * 60)  # 4 minutes; once the square of its length
+        found = pieces(among_quiet(1.0) * 60)  # 4 minutes; it once took quadratic time
         assert len(found) == 60
 
     @pytest.mark.parametrize("sound", [b"", b"\0", bytes(640), bytes(8 * RATE)])

@@ -369,7 +369,7 @@ class LetterDecoder:
 
 @pytest.fixture
 def ask(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[dict[str, Any]]]:
-    """Ask a worker whose decoder is a test's; "s" is urgent. Returns its answers."""
+    """Ask a worker with a given decoder; "s" is urgent. Returns its answers."""
     answers: list[dict[str, Any]] = []
     monkeypatch.setattr(room, "SILENCE", -1)  # a letter is as flat as silence
     worker = Worker(answers.append)

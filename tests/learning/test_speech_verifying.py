@@ -175,7 +175,7 @@ class ScriptedEars:
 
 
 class BusyEars(ScriptedEars):
-    """Ears whose first words arrive together with a typed line, as after a moment of hard work."""
+    """Ears whose first words arrive together with a typed line, as on a busy machine."""
 
     def __init__(self, *, live: bool, answers: bool) -> None:
         super().__init__(live=live, answers=answers)
@@ -201,7 +201,7 @@ class Session:
         self._typed: Iterator[str] = iter(())
 
     def run(self, *typed: str, scripted: bool = False) -> list[str]:
-        """Type some lines; what waits for a written line is spoken when it is there."""
+        """Type some lines; utterances that wait for a written line follow it."""
         from queue import Queue
 
         lines: Queue[str | None] = Queue()

@@ -1,4 +1,4 @@
-"""Rules from steps: they cover undemonstrated situations, are learnt, and can be undone."""
+"""Rules from steps: they cover undemonstrated situations, are learned, and can be undone."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def workspace(tmp_path: Path) -> Workspace:
 
 @pytest.fixture
 def teaching(workspace: Workspace) -> TeachingSession:
-    """Return a session whose last step was taken while an answer is waited for."""
+    """Return a session that waits for an answer about its last step."""
     session = workspace.teaching("Mary", 1)
     session.begin()
     teacher = ScriptedTeacher(session)

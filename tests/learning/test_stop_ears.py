@@ -31,7 +31,7 @@ def heard(words: str, stop: str, margin: float = 0.3) -> AcousticEvidence:
 
 
 def share(texts: tuple[str, ...]) -> float:
-    """Return which part of some texts stops the robot."""
+    """Return the share of some texts that stops the robot."""
     some = texts[::7]
     return sum(stops(text, BOOK.game) for text in some) / len(some)
 
@@ -89,8 +89,8 @@ def test_a_clearly_heard_phrase_is_no_stop() -> None:
         ("carry on", -0.2, True),
         ("slow down", -0.2, True),
         ("too fast for the car", 0.2, False),
-        ("carry on", -1.5, False),  # the sound was hardly that
-        ("undo that", 0.2, False),  # which no game has
+        ("carry on", -1.5, False),  # the sound hardly fitted
+        ("undo that", 0.2, False),  # a command that no game has
         ("carry on with the bag", 0.2, False),
     ],
 )
@@ -153,7 +153,7 @@ def test_a_high_average_stop_likelihood_gives_an_uncertain_stop(
 ) -> None:
     guesses = {f"dog {number}": one for number, one in enumerate(likely)}
     monkeypatch.setattr(stop_decoder, "likelihood", lambda guess, _: guesses[guess])
-    twice = [guess for guess in guesses for _ in range(2)]  # cut at other places
+    twice = [guess for guess in guesses for _ in range(2)]  # cut at different places
     heard = GuessingSearch(monkeypatch, *twice).hear()
     assert heard == (HeardStop("dog 0") if stops else HeardStop())
 
@@ -168,7 +168,7 @@ def test_a_longer_sentence_needs_a_higher_likelihood(
 
 
 class TwoAnswers:
-    """Stands in for the forked workers of the decoder; the one for the words may stay unused."""
+    """Stands in for the decoder's forked workers; the one for the words may remain unused."""
 
     found = HeardStop()
     words = ""
@@ -185,7 +185,7 @@ class TwoAnswers:
         return self.found if self.name == "hear" else (self.words, -2.0, ())
 
     def close(self) -> None:
-        """Nothing was started."""
+        """Do nothing, as nothing was started."""
 
 
 @pytest.mark.slow

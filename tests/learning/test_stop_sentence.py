@@ -98,7 +98,7 @@ def test_every_stop_phrase_stops() -> None:
         ("stop the lanterns", set(), False),
         ("stop teasing the lanterns", {"lanterns"}, False),
         ("please stop the music quiz", {"music", "quiz"}, True),
-        ("stop and go on", {"stop", "and", "go"}, True),  # a game may be called by any words
+        ("stop and go on", {"stop", "and", "go"}, True),  # a game may have any words as its name
         ("go on", {"stop", "and", "go"}, False),
     ],
 )

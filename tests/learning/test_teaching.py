@@ -54,7 +54,7 @@ def begun(store: Store, *, seed: int = 1, users: int = 4) -> TeachingSession:
 
 
 def teach(teaching: TeachingSession, *phrases: str) -> list[Executed]:
-    """Say each phrase, confirm it, and return what was executed."""
+    """Say each phrase, confirm it, and return the executed behaviours."""
     done = []
     for phrase in phrases:
         assert isinstance(teaching.apply(Say(phrase))[0], Asked)
@@ -139,7 +139,7 @@ def test_suggestions_are_never_refused_and_what_is_due_comes_before_the_frequent
     fourth = session(store, seed=4)
     fourth.begin(resume=False)
     assert fourth.sayable[:2] == ("greet everyone", "tell a joke")
-    silent = session(store, seed=5, activity=replace(BINGO, expected={}))  # nothing is due by it
+    silent = session(store, seed=5, activity=replace(BINGO, expected={}))  # it expects nothing
     silent.begin(resume=False)
     assert silent.sayable[:2] == ("tell a joke", "greet everyone")
 
@@ -378,7 +378,7 @@ def test_the_scripted_teacher_needs_expected_behaviours(store: Store) -> None:
 
 
 def test_an_exact_phrase_needs_few_function_calls(store: Store) -> None:
-    """A fifth of the 1,822 calls that it took while the unneeded alternatives were ranked too."""
+    """A fifth of the 1,822 calls that it took while it also ranked unneeded alternatives."""
     teaching = begun(store)
     teach(teaching, "greet everyone", "call a number")  # finds the lines of the cards, once
     calls = 0

@@ -44,13 +44,13 @@ def begun(store: Store, *, seed: int = 1, users: int = 4) -> TeachingSession:
 
 @contextmanager
 def empty_store() -> Iterator[Store]:
-    """Open a log that waits for the disk only once, so that many examples can be tried."""
+    """Open a log that waits for the disk only once, so that tests can try many examples."""
     with TemporaryDirectory() as folder, Store.open(Path(folder)) as opened, opened.transaction():
         yield opened
 
 
 def teach(teaching: TeachingSession, *phrases: str) -> list[Executed]:
-    """Say each phrase, confirm it, and return what was executed."""
+    """Say each phrase, confirm it, and return the executed behaviours."""
     done = []
     for phrase in phrases:
         assert isinstance(teaching.apply(Say(phrase))[0], Asked)
