@@ -174,7 +174,7 @@ def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def taught(_taught: Path, tmp_path: Path) -> Path:
-    """A data folder with three demonstrations and a policy learned from them."""
+    """A data folder with three demonstrations and a policy learnt from them."""
     return Path(shutil.copytree(_taught, tmp_path / "taught"))
 
 

@@ -22,7 +22,7 @@ PATIENCE = 20.0  # s
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 

@@ -46,7 +46,7 @@ def test_short_gaps_and_busy_times_are_no_freeze(seconds: float, worked: float) 
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 

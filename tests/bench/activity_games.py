@@ -2,7 +2,7 @@
 
 Run by hand: `python -m tests.bench.activity_games [--seed N] [--games N] [--people N] [NAME...]`.
 NAME is an activity or its file. A scripted teacher shows each activity in two guided games. Then
-the learned policy plays with simulated devices and the given number of people; each game has its
+the learnt policy plays with simulated devices and the given number of people; each game has its
 own seed. No fault is injected: each fault in the table is a false alarm or a defect of the
 bench. `asked` counts Tangy's questions to the teacher.
 """

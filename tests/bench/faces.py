@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def chosen(folder: Path, half: int | None) -> dict[str, list[Path]]:
-    """Return everybody's pictures, or every second person's; who has many is halved apart."""
+    """Return everybody's pictures, or every second person's: halves people with many separately."""
     there = {
         one.name: sorted(path for path in one.iterdir() if path.is_file())
         for one in sorted(folder.iterdir())

@@ -133,7 +133,7 @@ def simulated(
 
 
 def drawn(pairs: Sequence[tuple[str, str]], chance: Random) -> list[PairGame]:
-    """Draw one game of each pair, to be played on the bench."""
+    """Draw one game of each pair for the bench."""
     return [
         PairGame(ways(pair, chance.randint(*STEPS), number % 2), chance.randrange(1_000_000))
         for number, pair in enumerate(pairs)

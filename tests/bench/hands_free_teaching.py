@@ -1,7 +1,7 @@
 """A whole guided game of Bingo, taught by voice alone, without a key or a typed line.
 
 Run by hand: `python -m tests.bench.hands_free_teaching` (needs flite). A synthetic teacher says
-what the activity expects next, half of it in other words than the listed ones, sometimes the
+the activity's next expected command, half of them in unlisted wordings, sometimes the
 wrong thing, which it denies when Tangy asks, or takes back after it said yes. A sentence that
 was not understood is repeated in the listed words. The sound goes through the real decoder,
 hands-free. The minutes are those of the sound, with a second of quiet after each sentence, and
@@ -46,7 +46,7 @@ MOST = 400  # sentences
 
 
 class Teacher:
-    """Says aloud what is expected next, in a synthetic voice."""
+    """Says the next expected command aloud, in a synthetic voice."""
 
     def __init__(self, teaching: TeachingSession, seed: int) -> None:
         self._teaching = teaching

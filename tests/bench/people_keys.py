@@ -3,7 +3,7 @@
 Run by hand: `python -m tests.bench.people_keys --drives 100`. The driver steers at the
 nearest person or at a wall, at full speed, and never lets go; people and the counting of touches
 are as in `people_drives`. With `--encounters`, a person stands straight ahead instead, and walks
-at the robot as soon as it has come near. No real person or base took part.
+at the robot when it has come near. No real person or base took part.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def _commanded(hand: HandDrive, navigator: Navigator, scan: Scan, now: float) ->
 def speed_when_met(gap: float, walks: float, seed: int = 5) -> float:
     """Drive at a standing person; return the robot's speed when they met, in m/s.
 
-    The person walks at the robot, `walks` m/s fast, as soon as it is `gap` m away from them.
+    The person walks at the robot, `walks` m/s fast, once it is within `gap` m.
     """
     person, start, limits = Person(5.0, 1.5, 0.5), Pose(2.9, 1.5, 0.0), MotionLimits()
     drive = Drive(start, start, [person], np.random.default_rng(seed))

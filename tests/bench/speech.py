@@ -89,7 +89,7 @@ def right(kind: str, text: str, behaviour: str, arguments: dict[str, str]) -> bo
 
 
 def say(voice: str, texts: Iterable[str], folder: Path) -> None:
-    """Have a voice say sentences, each in a file of its own."""
+    """Have a voice say sentences; each goes to its own file."""
     new = [text for text in texts if not (folder / f"{voice}-{text}.wav").exists()]
     if voice in FESTIVAL:
         script = [f"(voice_{FESTIVAL[voice]})"]
@@ -194,7 +194,7 @@ def _pcm(samples: Samples) -> bytes:
     return np.clip(samples, -32_768, 32_767).astype("<i2").tobytes()
 
 
-# --------------------------------------------------------------------------------- what is heard
+# -------------------------------------------------------------------------------- the utterances
 
 _decoder: Decoder | None = None
 _settings = EvidenceSettings()

@@ -37,7 +37,7 @@ class DrivenRobot:
         self.rng = np.random.default_rng(seed)
         self.true, self.wheels = FRONT, Wheels(self.rng)
         self.boxes = list(boxes)
-        self.elsewhere: Segments | None = None  # what it sees instead of the room
+        self.elsewhere: Segments | None = None  # seen instead of the room
         self.grip = 1.0
         self.stuck = self.blind = False
         self.twist, self.time = STILL, 0.0

@@ -103,7 +103,7 @@ class TestHandDrive:
 
 
 class TestPeopleWhoSetOff:
-    """A person stands ahead, and walks at the robot as soon as it is `gap` m from them."""
+    """A person stands ahead, and walks at the robot once it is within `gap` m."""
 
     @pytest.mark.parametrize("walks", [1.0, 1.2])
     @pytest.mark.parametrize("gap", [0.64, 0.76, 0.88])

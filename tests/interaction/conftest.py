@@ -1,4 +1,4 @@
-"""Fixtures of the tests of facilitation: a learned policy, and games played with it."""
+"""Fixtures of the tests of facilitation: a learnt policy, and games played with it."""
 
 from __future__ import annotations
 

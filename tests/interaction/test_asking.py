@@ -286,7 +286,7 @@ def test_each_missing_situation_is_asked_about_once(
             assert decision.behaviour == activity.expected[situation]
 
 
-# --------------------------------------------------------------------------- what it settles
+# ------------------------------------------------------------------- the effect of an answer
 
 
 def disagreeing(store: Store, activity: Activity, cover: Cover) -> tuple[Situation, Policy]:

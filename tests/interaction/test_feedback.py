@@ -230,7 +230,7 @@ def test_the_order_of_late_feedback_does_not_matter(
     assert one == other
 
 
-# --------------------------------------------------------------------- one thing at a time
+# ---------------------------------------------------------------------------- single moves
 
 
 def test_a_void_response_has_a_reason_and_can_be_restored(store: Store) -> None:

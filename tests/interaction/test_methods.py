@@ -85,7 +85,7 @@ def test_the_default_method_draws_from_the_beta_posterior(
     assert type(method) is Thompson
 
 
-# --------------------------------------------------------------------------- laws of every one
+# ------------------------------------------------------------------------ laws of every method
 
 
 @given(methods, responses)

@@ -1,4 +1,4 @@
-"""The error rate of looks is learned and stored, and sets how many looks must agree."""
+"""The error rate of looks is learnt and stored, and sets how many looks must agree."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def effects(activity: Activity, demonstrate: Demonstrate) -> Effects:
     return learn_effects(activity, [demonstrate("bingo", 9000 + n, 4) for n in range(3)])
 
 
-# ------------------------------------------------------------------------- as it should be
+# --------------------------------------------------------------------------- correct games
 
 
 @pytest.mark.slow
@@ -98,7 +98,7 @@ def test_effects_are_learnt_for_a_made_up_activity(
     assert alarms <= GAMES * 0.01
 
 
-# -------------------------------------------------------------------------------- as it may go
+# ------------------------------------------------------------------------------ planted faults
 
 
 def nothing_happens(before: ActivityState, _: ActivityState) -> ActivityState:

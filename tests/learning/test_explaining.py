@@ -62,7 +62,7 @@ def without(shown: Demonstration, situation: Situation) -> Demonstration:
     return replace(shown, steps=steps)
 
 
-# ---------------------------------------------------------------------------------------- why
+# ------------------------------------------------------------------------------------ reasons
 
 
 def test_an_explanation_lists_exactly_the_steps_of_its_situation(

@@ -1,4 +1,4 @@
-"""A teacher's own phrases: words that Tangy did not understand at first, and learned afterwards."""
+"""A teacher's own phrases: words that Tangy did not understand at first, and learnt afterwards."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Paraphrases: understood by the learned intent model, offered, or ignored."""
+"""Paraphrases: understood by the learnt intent model, offered, or ignored."""
 
 from __future__ import annotations
 

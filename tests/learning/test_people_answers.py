@@ -130,7 +130,7 @@ def test_the_vocabulary_includes_answers_but_no_single_letters() -> None:
 @pytest.mark.parametrize(
     ("words", "stop", "options", "stops"),
     [
-        ("the dove move", "the dove move", ("the dove",), False),  # learned stops know no doves
+        ("the dove move", "the dove move", ("the dove",), False),  # learnt stops know no doves
         ("the crow", "the crow", ("the crow",), False),
         ("the crow", "the crow", ("the dove",), True),  # not an answer to this question
         ("the crow", "the crow", (), True),  # no question is open

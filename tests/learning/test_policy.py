@@ -105,7 +105,7 @@ def test_a_made_up_activity_is_learnt_exactly(lanterns: Activity, cover: Cover) 
     assert {policy.decide(s).behaviour for s in lanterns.situations} == set(lanterns.behaviours)
 
 
-# --------------------------------------------------------------------------- the same again
+# -------------------------------------------------------------------------- reproducibility
 
 
 def test_the_policy_depends_only_on_the_rows(activity: Activity) -> None:

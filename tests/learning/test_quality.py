@@ -32,7 +32,7 @@ WRONG = "incorrectly marked"
 
 @pytest.fixture
 def good(demonstrate: Demonstrate) -> list[Demonstration]:
-    """Four games that show the same, as it should be done."""
+    """Four games with the same correct steps."""
     games = (demonstrate("bingo", seed, 4) for seed in range(40))
     wanted = [g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps)]
     return wanted[:4]

@@ -16,7 +16,7 @@ Key = tuple[object, ...]
 
 
 def key(state: ActivityState) -> Key:
-    """What tells joint states apart; who is first in the queue does not matter to the policy."""
+    """The features that distinguish joint states; the policy ignores the order of the queue."""
     asking = frozenset(user.id for user in state.users if user.request == "AR")
     return (state.situation, state.place, asking)
 
@@ -33,7 +33,7 @@ def test_four_people_have_242_joint_states(activity: Activity) -> None:
 def test_the_number_of_joint_states_matches_the_formula(n: int, activity: Activity) -> None:
     states = list(joint_states(activity, people(n)))
     quiet = 3  # start, socialize, facilitate
-    beside = n * 2 ** (n - 1)  # somebody who asks, and any others who ask
+    beside = n * 2 ** (n - 1)  # one person who asks, and any others who ask
     asked = sum(comb(n, asking) * (1 + n - asking) for asking in range(1, n + 1))
     assert len(states) == quiet + 5 * beside + beside + asked + n
     assert len({key(state) for state in states}) == len(states)

@@ -50,7 +50,7 @@ def book(activity: Activity, people: tuple[Person, ...]) -> Phrasebook:
 
 @pytest.fixture
 def spoken(book: Phrasebook) -> Callable[[str], Say]:
-    """A text as it comes from the ears."""
+    """A text as recognised by the ears."""
     return lambda text: Say(text, 0.9, book.choices(text))
 
 
@@ -223,8 +223,8 @@ class TestKeeping:
         commands = (*book.choices("tell a joke"), *book.choices("greet everyone"))
         for command in (
             Say("tell a greeting", 0.5, commands, sure=False),
-            Reply(yes=True),  # to an offer: which?
-            Reply(yes=True, alternative=7),  # there is none
+            Reply(yes=True),  # it names no offered choice
+            Reply(yes=True, alternative=7),  # this choice does not exist
             Reply(yes=True, alternative=2),
             Reply(yes=True),
         ):

@@ -13,7 +13,7 @@ from tangy_tui.speech.evidence import RATE
 
 
 def _speech(seconds: float = 1.0, *, upto: float, seed: int = 1) -> NDArray[np.float64]:
-    """Return sound in bursts, as syllables are, with nothing above a frequency."""
+    """Return sound in bursts, like syllables, with nothing above a frequency."""
     chance = np.random.default_rng(seed)
     length = round(seconds * RATE)
     spectrum = np.fft.rfft(chance.normal(size=length))

@@ -1,4 +1,4 @@
-"""Rules from steps: they cover undemonstrated situations, are learned, and can be undone."""
+"""Rules from steps: they cover undemonstrated situations, are learnt, and can be undone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The learned model of sentences that stop the robot without a verb of stopping."""
+"""The learnt model of sentences that stop the robot without a verb of stopping."""
 
 from __future__ import annotations
 

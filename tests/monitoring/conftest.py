@@ -16,7 +16,7 @@ Supervise = Callable[..., Supervision]
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 

@@ -215,7 +215,7 @@ def test_a_session_is_the_last_games_of_one_world_without_a_long_pause() -> None
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 

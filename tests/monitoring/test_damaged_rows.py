@@ -121,7 +121,7 @@ def read_all(folder: Path) -> None:
         workspace.close()
 
 
-# ------------------------------------------------------------------------------ any damage at all
+# ------------------------------------------------------------------------------------- any damage
 
 ODD = st.sampled_from(
     [None, 0, -1, 7, 10**30, -1e300, "x", "user9", [], [1], ["x"], {}, {"a": 1}, True, "\ud800"]
@@ -210,7 +210,7 @@ def test_many_damaged_rows_break_no_reader_of_the_log(_every_kind: Path, several
     _survives(_every_kind, several)
 
 
-# ------------------------------------------------------------------------------------- it is named
+# ----------------------------------------------------------------------------------------- reports
 
 NEEDED = [
     ("demonstration begun", "seed", ("demonstrations", "list")),
@@ -247,7 +247,7 @@ def test_a_verb_names_a_damaged_row_and_continues(
     ran = tangy(*verb, "--data", every_kind)
     named = f"event {seq} ({kind}) is damaged and left out: it has no '{key}'"
     assert named in ran.stderr
-    if (kind, verb) != ("policy learnt", ("policy",)):  # then nothing was learned, it says
+    if (kind, verb) != ("policy learnt", ("policy",)):  # then nothing was learnt, it says
         assert ran.returncode == 0, ran.stderr
 
 
@@ -352,7 +352,7 @@ def test_an_unknown_method_is_left_out(every_kind: Path, tangy: Tangy) -> None:
     assert "'thomson' (did you mean 'thompson'?)" in ran.stderr
 
 
-# ------------------------------------------------------------------ what hangs on what is left out
+# -------------------------------------------------------------- events that depend on damaged ones
 
 
 def steps_of(folder: Path, place: int) -> list[int]:

@@ -88,7 +88,7 @@ def right_keys(drill: Drill) -> list[str]:
     return keys
 
 
-# ------------------------------------------------------------------------------ what is drawn
+# --------------------------------------------------------------------------- the drawn rounds
 
 
 @pytest.mark.parametrize("rounds", range(1, 51))
@@ -117,7 +117,7 @@ def test_different_seeds_draw_different_drills() -> None:
     assert len(drills) == 20
 
 
-# --------------------------------------------------------------------------- what happens then
+# ----------------------------------------------------------------------- the course of a round
 
 
 @pytest.mark.slow

@@ -34,7 +34,7 @@ CRITICAL = ("emergency-stop", "link-lost", "laser-disconnected", "camera-frozen"
 EASY = ("voice-dead", "arm-failed", "requests-silent", "laser-occluded", "camera-occluded")
 
 
-# ------------------------------------------------------------------------------ standing still
+# --------------------------------------------------------------------------------------- halts
 
 
 @pytest.mark.parametrize("kind", CRITICAL)
@@ -164,7 +164,7 @@ def test_a_repeated_fault_is_not_asked_for_ever(
     assert max(person.count(one) for one in person) <= 4
 
 
-# ----------------------------------------------------------------------------- two at once
+# ---------------------------------------------------------------------- two faults at once
 
 
 @pytest.mark.parametrize("other", EASY)
@@ -287,7 +287,7 @@ def check_log(store: Store) -> None:
 
 @pytest.fixture(scope="module")
 def small_policy(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
-    """The same demonstrations, learned by few trees, so that answers are learned at once."""
+    """The same demonstrations, learnt by few trees, so that answers are learnt at once."""
     workspace = Workspace(Path(copytree(_taught, tmp_path_factory.mktemp("small") / "data")))
     with closing(workspace):
         shown = read_library(workspace.store, workspace.activity.name).finished

@@ -315,6 +315,6 @@ def picture(
 def policy(
     workspace: Workspace, cover: Callable[[str, int, int], tuple[Demonstration, ...]]
 ) -> Policy:
-    """A policy that covers every situation, learned by few trees."""
+    """A policy that covers every situation, learnt by few trees."""
     settings = ForestSettings(trees=5)
     return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), settings)

@@ -155,7 +155,7 @@ async def test_an_earlier_policy_can_be_opened(run: Run, workspace: Workspace) -
 
 
 def spoil(workspace: Workspace) -> None:
-    """Store the last policy as if another version had learned it."""
+    """Store the last policy as if another version had learnt it."""
     kept = last_policy(workspace.store, workspace.activity.name)
     assert kept is not None
     rows = (kept.rows[0]._replace(behaviour="something else"), *kept.rows[1:])

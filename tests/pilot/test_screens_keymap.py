@@ -37,7 +37,7 @@ Opens = Callable[[Program], Coroutine[Any, Any, None]]
 
 @pytest.fixture
 def taught(workspace: Workspace) -> Workspace:
-    """A workspace with a demonstration, and the policy learned from it."""
+    """A workspace with a demonstration, and the policy learnt from it."""
     teaching = workspace.teaching(SCRIPTED, 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()

@@ -400,7 +400,7 @@ async def test_a_key_typed_before_the_conflict_appears_resolves_nothing(
         assert pilot.app.screen.query_one(LogView).sentences == ()
 
 
-# --------------------------------------------------------------------------------- how it looks
+# ----------------------------------------------------------------------------------- appearance
 
 
 @SIZES

@@ -76,7 +76,7 @@ def line_with(pilot: TangyPilot, *words: str) -> str:
     return next(line for line in pilot.lines() if all(word in line for word in words))
 
 
-# ------------------------------------------------------------------------------ what it says
+# ----------------------------------------------------------------------------------- content
 
 
 async def test_the_screen_says_in_words_what_works_with_each_person(
@@ -122,7 +122,7 @@ async def test_another_person_is_chosen_with_the_arrows(run: Run, workspace: Wor
         assert "★" not in pilot.text(), "equal is not best"
 
 
-# --------------------------------------------------------------------------- what it changes
+# ----------------------------------------------------------------------------------- changes
 
 
 @pytest.mark.slow
@@ -271,7 +271,7 @@ async def test_the_key_line_lists_every_key_at_80_columns(run: Run, workspace: W
             assert f" {key} " in keys
 
 
-# -------------------------------------------------------------------------------- its looks
+# ------------------------------------------------------------------------------- appearance
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
@@ -345,7 +345,7 @@ async def test_every_size_shows_the_chosen_person_in_full(
             assert words in text
 
 
-# ------------------------------------------------------------------------- how a name is said
+# ----------------------------------------------------------------------------- pronunciations
 
 
 @pytest.mark.slow

@@ -33,13 +33,13 @@ from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 
 @pytest.fixture
 def policy(learnt: Policy) -> Policy:
-    """The policy that was learned there."""
+    """The policy that was learnt there."""
     return learnt
 
 

@@ -25,7 +25,7 @@ from tests.support.waiting import until, until_shown
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 

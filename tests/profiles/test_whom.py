@@ -1,4 +1,4 @@
-"""The addressee of a behaviour is learned with it; if selectors disagree, Tangy asks."""
+"""The addressee of a behaviour is learnt with it; if selectors disagree, Tangy asks."""
 
 from __future__ import annotations
 

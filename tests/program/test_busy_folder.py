@@ -16,7 +16,7 @@ from tangy_tui.verbs.opening import open_workspace
 
 @pytest.fixture
 def data_folder(taught: Path) -> Path:
-    """A folder with three demonstrations and a policy learned from them."""
+    """A folder with three demonstrations and a policy learnt from them."""
     return taught
 
 

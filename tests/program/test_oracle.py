@@ -1,4 +1,4 @@
-"""The recorder for refactorings: what it normalises, and what it compares."""
+"""The recorder for refactorings: how it normalises and compares."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def counts(done: CompletedProcess[str], strategy: str) -> tuple[int, int]:
     return belief["complied"], belief["trials"]
 
 
-# ------------------------------------------------------------------------------ what is told
+# ----------------------------------------------------------------------------------- reports
 
 
 def test_a_person_is_shown_with_every_posterior(people: Tangy) -> None:
@@ -143,7 +143,7 @@ def test_an_option_after_a_verb_overrides_one_before_it(
     assert "Rosa" in after.stdout
 
 
-# --------------------------------------------------------------------------- what is changed
+# ----------------------------------------------------------------------------------- changes
 
 
 @pytest.mark.slow

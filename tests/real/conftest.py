@@ -70,7 +70,7 @@ def open_tmux(tmp_path: Path) -> Iterator[Callable[[int, int], Tmux]]:
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder with one guided game, and the policy learned from it."""
+    """A data folder with one guided game, and the policy learnt from it."""
     folder = tmp_path_factory.mktemp("taught")
     teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
     for command in (teach, ["learn"]):

@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 
 @pytest.fixture
 def data_folder(folder: Path) -> Path:
-    """A folder with one guided game and the policy learned from it."""
+    """A folder with one guided game and the policy learnt from it."""
     return folder
 
 

@@ -34,7 +34,7 @@ from tests.sim.guided import (
     shown,
 )
 
-# --------------------------------------------------------------------- what one game is enough for
+# ---------------------------------------------------------------------------- coverage of one game
 
 
 @pytest.mark.slow
@@ -126,7 +126,7 @@ def test_an_impossible_situation_does_not_delay_the_end() -> None:
     assert turns[-2].step.behaviour == "celebrate"
 
 
-# -------------------------------------------------------------------- natural, for who teaches it
+# ---------------------------------------------------------------------------------- natural games
 
 
 @pytest.mark.xdist_group("guide")
@@ -235,7 +235,7 @@ def test_a_person_with_a_full_line_of_marks_asks() -> None:
                 assert world.over or not BINGO.deck.wins(player.marked) or player.id in t.asking
 
 
-# ----------------------------------------------------------------------------- had again, by seed
+# --------------------------------------------------------------------------- reproducible by seed
 
 
 @pytest.mark.slow

@@ -47,7 +47,7 @@ def test_a_simulated_world_is_a_world() -> None:
     assert made.observe().stage == "start"
 
 
-# ------------------------------------------------------------------------- what games are like
+# ------------------------------------------------------------------------- the course of games
 
 
 @pytest.mark.parametrize("users", range(1, 9))
@@ -205,7 +205,7 @@ def test_calls_after_the_last_number_draw_none() -> None:
     assert numbers[75:] == [()] * 5
 
 
-# ---------------------------------------------------------------- whatever a teacher does in it
+# --------------------------------------------------------------------- any actions of a teacher
 
 
 @given(

@@ -44,7 +44,7 @@ from tests.support.append_body import append_body
 
 
 def write_every_kind(folder: Path) -> None:
-    """Add the missing kinds of events to a folder with a learned policy."""
+    """Add the missing kinds of events to a folder with a learnt policy."""
     workspace = Workspace(folder)
     try:
         with workspace.store.transaction():

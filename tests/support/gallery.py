@@ -233,7 +233,7 @@ class GalleryScreen(TangyScreen[None]):
         )
 
     def on_stop(self, message: Stop) -> None:
-        """Say that STOP was heard."""
+        """Report a heard STOP."""
         self.room_view.skip()
         self.log_view.write(f"Stopped: {message.reason}.", "bad")
 

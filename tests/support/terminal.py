@@ -96,7 +96,7 @@ class Terminal:
         return chunk
 
     def until(self, seen: str | Callable[[str], bool]) -> str:
-        """Read until a text (or what a function looks for) is on the screen, and return it."""
+        """Read until a text is on the screen, or a condition is true; return all text."""
         found = (lambda text: seen in text) if isinstance(seen, str) else seen
         deadline = monotonic() + PATIENCE
         while not found(self.text):
