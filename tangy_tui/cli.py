@@ -28,19 +28,19 @@ def main() -> None:
         print(f"tangy: {error}", file=sys.stderr)
         status = 2
     except BrokenPipeError:
-        sys.stderr.close()  # the reader of our output has had enough
+        sys.stderr.close()  # the reader has closed our output
         status = 1
     except KeyboardInterrupt:
         status = 130
-    gc.freeze()  # or Python looks through all that was loaded once more, for .4 s
+    gc.freeze()  # or Python searches all loaded objects once more, for .4 s
     sys.exit(status if isinstance(status, int) else 0)
 
 
 def run() -> object:
-    """Run what the words of the command line ask for.
+    """Run the command line's words.
 
-    The option parser takes longer to load than most of the program needs to open, so that it is
-    loaded only where there is something to parse.
+    The option parser takes longer to load than most of the program needs to open, so it is
+    loaded only if it is needed.
     """
     if sys.argv[1:] == ["--version"]:
         print(f"tangy {__version__}")
@@ -58,7 +58,7 @@ def run() -> object:
 
 
 def program_options(words: Sequence[str]) -> dict[str, Any] | None:
-    """Return what `open_program` is given, or None where more than its plain options is said."""
+    """Return the arguments of `open_program`; None if there are more than its plain options."""
     given: dict[str, Any] = {}
     rest = iter(words)
     for word in rest:
@@ -81,7 +81,7 @@ def program_options(words: Sequence[str]) -> dict[str, Any] | None:
 
 
 def parsed() -> object:
-    """Run the verb that is asked for."""
+    """Run the requested verb."""
     import typer
 
     from tangy_profiles.reading import plain

@@ -1,4 +1,4 @@
-"""What of this machine works, and what to do about what does not: each part in one sentence."""
+"""Checks which parts of this machine work, and how to repair the others: a sentence for each."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tangy_profiles.robot import Robot
 
 
-TEST_SECONDS = 10.0  # for an answer to a message that is a test
+TEST_SECONDS = 10.0  # for the answer to a test message
 
 NOUNS: Mapping[Group, str] = {
     "drivers": "driver",
@@ -47,8 +47,8 @@ NOUNS: Mapping[Group, str] = {
 class Finding:
     """One part of the machine, whether it works, and a sentence about it.
 
-    `broken`: it is there, or has to be, and cannot be used; what is not ok otherwise is missing,
-    and Tangy does without it.
+    `broken`: it is there or required, but unusable; a part that is neither ok nor broken is
+    missing, and Tangy works without it.
     """
 
     part: str
@@ -58,12 +58,12 @@ class Finding:
 
     @property
     def state(self) -> str:
-        """Say in one word whether it works: ok, missing or broken."""
+        """Return its state in one word: ok, missing or broken."""
         return "ok" if self.ok else "broken" if self.broken else "missing"
 
 
 def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> list[Finding]:
-    """Look at everything Tangy may use.
+    """Examine everything that Tangy may use.
 
     Args:
         folder: the data folder.
@@ -82,7 +82,7 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
 
 
 def _extensions() -> Iterator[Finding]:
-    """Say of everything that other packages add whether it can be used."""
+    """Report for every extension by other packages whether it is usable."""
     from tangy_hw.drivers.registry import DRIVERS, driver_kind
     from tangy_profiles.activity import read_activity, shipped_activities
     from tangy_profiles.extensions import (
@@ -137,21 +137,21 @@ def examine_robot(
     *,
     folder: Path | None = None,
 ) -> list[Finding]:
-    """Try every device of a robot that its profile says how to reach; nothing is moved.
+    """Try every device with an address in a robot's profile; nothing is moved.
 
     Args:
-        robot: whose devices they are.
-        activity: what it is for.
-        cameras: where its cameras' pictures come from, by device.
-        seconds: for which is waited for a device at most.
-        folder: the data folder, which knows the tablets that are paired.
+        robot: the robot with the devices.
+        activity: the activity that the robot is to run.
+        cameras: the sources of its cameras' pictures, by device.
+        seconds: the longest wait for a device.
+        folder: the data folder, which knows the paired tablets.
     """
     from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.robot_process.self_test import try_robot
 
     pairing = {}
     if folder is not None and any(driver.kind == "page" for driver in robot.drivers.values()):
-        with suppress(OSError):  # there is something to keep: the code that it tells
+        with suppress(OSError):  # for the chest screen's code, which is stored
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         pairing = keep_pairing(folder).to_json()
 
@@ -164,11 +164,11 @@ def examine_robot(
 
 
 def examine_contacts(robot: Robot, seconds: float = TEST_SECONDS) -> list[Finding]:
-    """Call everybody whom a robot's file names, with a message that says that it is a test.
+    """Call every contact in a robot's file, with a message that says that it is a test.
 
     Args:
-        robot: whose file names them.
-        seconds: for which an answer is waited for.
+        robot: the robot with the contacts in its file.
+        seconds: the longest wait for an answer.
     """
     from tangy_hw.calling import CallNews, call
     from tangy_profiles.contacts import ROLES
@@ -264,7 +264,7 @@ def _store(folder: Path) -> Finding:
 
 
 def _no_place(folder: Path) -> str:
-    """Say why nothing can be kept in a folder, which may have to be made first (empty: it can)."""
+    """Return why a folder, which may not exist yet, cannot store data (empty: it can)."""
     folder = folder.absolute()
     above = next(path for path in (folder, *folder.parents) if _exists(path))
     if above.is_dir() and os.access(above, os.W_OK | os.X_OK):
@@ -278,7 +278,7 @@ def _no_place(folder: Path) -> str:
 def _exists(path: Path) -> bool:
     try:
         return path.exists()
-    except OSError:  # it may not even be asked for, so look at what it is in
+    except OSError:  # even the test is forbidden, so examine its parent
         return False
 
 

@@ -1,4 +1,4 @@
-"""The door between the program and a world: a simulated and a real one both fit it, unasked."""
+"""The interface between the program and a world; the simulated and the real world implement it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tangy_profiles.state import ActivityState, Outcome
 
 
 class World(Protocol):
-    """A room with people and a robot in it, in which one game after another is played."""
+    """A room with people and a robot, in which games are played in turn."""
 
     activity: Activity
     people: tuple[str, ...]
@@ -27,12 +27,12 @@ class World(Protocol):
 
     @property
     def seconds(self) -> float:
-        """The world's own time, in s; where it began to count is its own matter."""
+        """The world's own time, in s, from any starting point."""
         ...
 
     @property
     def pauses(self) -> tuple[int, float]:
-        """How often the robot has waited for late data in this game, and for how many s."""
+        """The number of waits for late data in this game, and their total in s."""
         ...
 
     def begin(self) -> ActivityState:
@@ -40,58 +40,58 @@ class World(Protocol):
         ...
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Go on where a game was interrupted; return the state that it was in.
+        """Continue an interrupted game; return its state.
 
         Raises:
-            NotResumable: its log does not lead there.
+            NotResumable: the log does not lead to this game.
         """
         ...
 
     def observe(self) -> ActivityState:
-        """Return the joint state as it is observed now (III-B-1)."""
+        """Return the observed joint state (III-B-1)."""
         ...
 
     def execute(self, action: Action) -> Outcome:
-        """Carry out an action and return what became of it."""
+        """Carry out an action and return its outcome."""
         ...
 
     def who(self, place: str) -> str:
-        """Return who sits at somebody's place: mostly the one whose place it is."""
+        """Return the person who sits at a person's place, usually its owner."""
         ...
 
     def scene(self) -> Scene:
-        """Return what there is to see, for a screen to draw."""
+        """Return the visible scene for a screen to draw."""
         ...
 
     def health(self) -> Health:
-        """Return what the robot's devices say of themselves now (III-C)."""
+        """Return the reports of the robot's devices (III-C)."""
         ...
 
     def recover(self, remedy: Remedy) -> float:
-        """Do something about a fault; return how long that took, in s."""
+        """Carry out a remedy for a fault; return the time taken, in s."""
         ...
 
 
 @runtime_checkable
 class Arranging(Protocol):
-    """A world that sees to it that everything comes about, and says what comes next."""
+    """A world that arranges missing situations, and announces the next one."""
 
     @property
     def coming(self) -> ArrangedCard | ArrangedSituation | None:
-        """What is about to come about, None where nothing is."""
+        """The next arranged event or situation; None if there is none."""
         ...
 
 
 @runtime_checkable
 class Remembering(Protocol):
-    """A world whose games cannot be played again from their steps: their facts are logged."""
+    """A world whose games cannot be replayed from their steps, so that their facts are logged."""
 
     @property
     def memory(self) -> GameMemory:
-        """Everything that is known of the game now."""
+        """All current facts of the game."""
         ...
 
 
 def remembered(world: World) -> GameMemory | None:
-    """Return what has to be logged of a game, None where its steps are enough."""
+    """Return the facts of a game to be logged; None if its steps are enough."""
     return world.memory if isinstance(world, Remembering) else None
