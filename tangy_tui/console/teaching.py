@@ -130,7 +130,7 @@ class TeachingLines:
         self._tour = Tour() if tour else None
         self._scripted = scripted
         self._kept = False  # part of the present demonstration is in the log
-        self._complete = False  # a demonstration was completed in this session
+        self._complete = False  # a demonstration was completed, and Tangy has not learnt since
         self._spoken: asyncio.Future[Heard | None] | None = None
         self._typed: asyncio.Future[str | None] | None = None
         if ears is not None:
@@ -182,7 +182,7 @@ class TeachingLines:
         if self.plays:
             return
         shown = self._teaching.demonstration
-        if shown.finished or (self._complete and not shown.steps):
+        if self._complete and (shown.finished or not shown.steps):
             self._write(learn_next(self._learn))
         elif shown.steps and self._kept:
             self._write(left_after(len(shown.steps), self._resume))
@@ -336,6 +336,7 @@ class TeachingLines:
             return
         if word == Perform("learn"):
             self._write_all(left_open_lines(self._teaching))
+            self._complete = False
         lines, self.plays = (
             ([ON_THE_SCREEN], False) if self._after is None else (self._after.perform(word))
         )
@@ -343,8 +344,7 @@ class TeachingLines:
 
     def _guide(self) -> None:
         """Begin or resume a guided game; the steps of the present game are kept."""
-        teaching = self._teaching
-        shown = teaching.demonstration
+        teaching, shown = self._teaching, self._teaching.demonstration
         if shown.guided and not shown.finished:
             self._write(GUIDED_ALREADY)
             return

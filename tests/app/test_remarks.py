@@ -476,6 +476,7 @@ async def test_a_remark_left_open_by_lines_comes_back_once_before_learning(
     assert "did not ask for help" in told
     assert f"again {number}" in told
     assert said.index(told) < said.index("Learnt.")
+    assert "tangy learn" not in said[-1]  # Tangy has learnt from it
 
 
 async def test_a_remark_on_a_step_that_was_undone_does_not_come_back(workspace: Workspace) -> None:
