@@ -21,7 +21,7 @@ from tangy_tui.text.activity_conversion import CAN_ADD, COMMENTS
 
 Tangy = Callable[..., CompletedProcess[str]]
 OLD = Path(__file__).parents[1] / "lanterns.toml"
-"""A file of version 0.6.0, of a game in other words than the one that ships."""
+"""A file of version 0.6.0, of a game with other words than the shipped one."""
 TEXT = OLD.read_text(encoding="utf-8")
 
 

@@ -29,7 +29,7 @@ from tests.support.declared import DECLARED, declared
 PEOPLE = ("user1", "user2", "user3")
 SEED = 4
 LEFT = ((4, "user1"), (7, "user3"))
-"""After how many steps who left."""
+"""The number of steps after which each person left."""
 
 
 def live(name: str) -> DeclaredLiveWorld:

@@ -176,4 +176,4 @@ KINDS = (
     Kind(room_frames, 0.06, 0.0, 0.0, dict.fromkeys(ROOMS, 1000)),
     Kind(scene_frames, 0.06, 0.0, 0.0, {}, {101_002: 500}),
 )
-"""What is learnt from, and what the temperature is chosen on."""
+"""The frames of training, and of the choice of the temperature."""

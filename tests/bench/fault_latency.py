@@ -32,7 +32,7 @@ from tangy_tui.ui.widgets.fault_banner import FaultBanner
 
 SIZES = ((80, 24), (120, 40), (160, 45))
 MOST_SECONDS = 0.1
-"""What 95 of 100 faults may take from their observation until their diagnosis is seen."""
+"""The limit for 95 of 100 faults, from their observation until their diagnosis is visible."""
 
 IDLE_SECONDS = 5.0
 WIDTHS = (9, 9, 7, 9, 7, 7)

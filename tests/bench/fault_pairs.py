@@ -59,7 +59,7 @@ class PairGame:
     stopped: str | None = None
     events: list[Event] = field(default_factory=list, repr=False)
     places: list[tuple[float, str]] = field(default_factory=list, repr=False)
-    """When in the game (s) the robot was where."""
+    """The robot's places, each with its time in the game (s)."""
 
     @property
     def fine(self) -> bool:

@@ -37,7 +37,7 @@ from tests.bench import fault_games
 
 SETTINGS: dict[str, Any] = {"activity": "bingo", "users": 4}
 LESSONS = (0, 1, 2, 3, 4)
-"""The seeds of the triples of demonstrations, whose games came about by chance."""
+"""The seeds of the triples of demonstrations, whose games are random."""
 
 REASONS = {
     DRIVING: "the robot does not drive with it",

@@ -25,7 +25,7 @@ WALK_SECONDS = 5.0
 IDLE_SECONDS = 3.0
 HERTZ = 10
 MOST_BYTES = 600
-"""What a frame may cost on average at 120 x 40."""
+"""The limit of a frame's average size at 120 x 40."""
 
 SYNC_QUERY = b"\x1b[?2026$p"
 SYNC_YES = b"\x1b[?2026;2$y"

@@ -54,7 +54,7 @@ class Teacher:
         self._chance = random.Random(seed)
         self._plain = False
         self.errs = False
-        """Whether the last step is to be taken back."""
+        """Whether the teacher is to take back the last step."""
         self._meant = ""
         self.counts = Counter[str]()
 

@@ -33,7 +33,7 @@ SENTENCES = ("greet everyone", "call the next number", "ask him to move the card
 PHASE_SECONDS = 5.0
 WAKES = 0.005
 MOST_MORE = 0.050
-"""Seconds by which the longest gap may grow while a voice is decoded."""
+"""Seconds by which the longest gap may grow while speech is decoded."""
 
 # Stands in for arecord: plays a file over and over, as fast as it was spoken.
 MICROPHONE = """#!{python}

@@ -19,7 +19,7 @@ from tests.support.terminal import TANGY
 SIZES = ((80, 24), (120, 40))
 SECONDS = 30.0
 REMARKED = ("esc go on", "esc decide later")
-"""What stands at the end of the screen where something is said of a step."""
+"""The end of the screen while it shows a remark on a step."""
 COMMANDS = ("greet everyone", *["call number"] * 4, "tell a joke", "call number")
 
 

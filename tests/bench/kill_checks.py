@@ -27,13 +27,13 @@ class Found:
     lost: int = 0
     not_offered: int = 0
     other: dict[str, int] = field(default_factory=dict)
-    """How often something was not the same, by what it was."""
+    """The count of each difference, by its subject."""
     restarts: list[float] = field(default_factory=list)
     computed: list[float] = field(default_factory=list)
-    """How many s of each restart the program was computing."""
+    """The CPU time of each restart, in s."""
     at_steps: list[int] = field(default_factory=list)
     played_on: int = 0
-    """How many of the resumed games were played to their end."""
+    """The number of resumed games that were played to their end."""
 
     def differs(self, what: str) -> None:
         """Count a difference."""

@@ -39,7 +39,7 @@ from tests.bench.kill_checks import Found, compare, compare_end, compare_order, 
 
 TANGY = (sys.executable, "-P", "-c", "from tangy_tui.cli import main; main()")
 STEP = re.compile(r"^ *(\d+)\.? (?=\w)")
-"""A line that tells a step that was carried out, and kept."""
+"""A line that reports an executed and stored step."""
 LATEST = 0.02  # s after a line until the kill
 START = 120.0  # s until the program's first output, on a busy machine
 LEGS = 5  # kills of one game on the bench

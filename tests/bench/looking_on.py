@@ -26,7 +26,7 @@ from tests.support.terminal import Terminal
 
 WATCHED_SECONDS = 60.0
 STEP_DRAWN = re.compile(r"\d\d:\d\d:\d\d +(\d+)\. ")
-"""A line of the screen that tells a step, with its number."""
+"""A line of the screen that reports a step, with its number."""
 
 
 def watched(folder: Path, seconds: float) -> list[float]:

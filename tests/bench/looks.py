@@ -21,7 +21,7 @@ from tests.support.odd_looks import ODD, OddCards, OddStates, OddWorld
 
 WORLDS: dict[str, type[OddWorld]] = {"a card": OddCards, "all that is observed": OddStates}
 LESSONS = (0, 1, 2, 3, 4)
-"""The seeds of the triples of demonstrations, whose games came about by chance."""
+"""The seeds of the triples of demonstrations, whose games are random."""
 
 
 def played(kind: type[OddWorld], odd: str, share: float, games: int) -> dict[str, Any]:

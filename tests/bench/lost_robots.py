@@ -41,7 +41,7 @@ class Outcome:
 
     tries: int = 0
     wrong: int = 0
-    """Robots that first believed a wrong place."""
+    """Robots that were first found at a wrong place."""
     never: int = 0
     looks: int = 0
     wrong_looks: int = 0
@@ -49,7 +49,7 @@ class Outcome:
     """Scans until a robot counted as found."""
     metres: list[float] = field(default_factory=list)
     took: list[float] = field(default_factory=list)
-    """Time of the processor for each scan, in s."""
+    """Processor time for each scan, in s."""
 
     def follow(self, localisation: Localisation, way: Iterable[Moment]) -> None:
         """Let a robot find its place on a drive."""

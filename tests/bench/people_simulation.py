@@ -40,7 +40,7 @@ MAP = map_of_room(ROOM)
 WALLS = room_sides(ROOM)
 
 Kind = Literal["ahead", "behind", "stood"]
-"""Who touched whom: the robot somebody before it, or aside and behind; somebody the robot."""
+"""The kind of touch: the robot touched a person ahead, or aside or behind; a person touched it."""
 
 
 @dataclass
@@ -55,9 +55,9 @@ class Person:
     radius: float = TORSO
     touches: bool = False
     bumped: float = 0.0
-    """Until when they step back from a robot against which they came, in s."""
+    """The time in s until which they step back from a robot that they touched."""
     now: tuple[float, float] = (0.0, 0.0)
-    """How far the last step led, in m."""
+    """The last step, in m."""
 
     def walk(self, heading: float, speed: float) -> None:
         """Walk for a tick."""
@@ -94,7 +94,7 @@ class Person:
 
 
 Away = Callable[[Pose, float, float], float]
-"""How many metres a point is from the edge of a robot at a pose."""
+"""Returns the distance in m of a point from the edge of a robot at a pose."""
 
 
 def disc(pose: Pose, x: float, y: float) -> float:
@@ -127,11 +127,11 @@ class Drive:
     touches: list[Touch] = field(default_factory=list)
     nearest: float = inf
     near: list[float] = field(default_factory=list)
-    """How fast it drove while somebody was within a metre before it, in m/s."""
+    """Its speed while a person was within a metre ahead, in m/s."""
     silent: float = 0.0
-    """For how long at most it stood and said nothing of why, in s."""
+    """The longest time that it stood without an explanation, in s."""
     ticks: list[float] = field(default_factory=list)
-    """How long the navigator took for each tick, in s of the processor."""
+    """The navigator's processor time for each tick, in s."""
     _quiet: float = 0.0
 
     def __post_init__(self) -> None:

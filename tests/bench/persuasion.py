@@ -38,7 +38,7 @@ ROUNDS, DECISIONS = 9, 3_000
 
 Rates = Mapping[str, float]
 Crowd = Callable[[object], Rates]
-"""Gives a person's rates of compliance, strategy by strategy, for the person's name."""
+"""Returns a person's rates of compliance, by strategy, for the person's name."""
 
 
 class Chooser(Protocol):

@@ -27,7 +27,7 @@ from tests.support.link import Answerer, FarTerminal, Link
 from tests.support.terminal import TANGY, Terminal
 
 A_GAME = 25
-"""Calls that fit into a game before somebody may win it."""
+"""Calls that fit into a game before anybody may win it."""
 
 READING = 0.3  # s
 

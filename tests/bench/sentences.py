@@ -70,7 +70,7 @@ WORDINGS: Mapping[str, str] = {
     "drive over to the player": "navigate to user",
     "please go to the person": "navigate to user",
 }
-"""What an utterance asks for, in words that are no phrase of the activity."""
+"""Requests in words that are no phrase of the activity, with their behaviours."""
 
 NEAR = (
     "what is the number of the bus",
@@ -178,4 +178,4 @@ FAR = (
     "there was a storm last night",
     "how do you spell your name",
 )
-"""Other speech that shares hardly any."""
+"""Other speech that shares hardly any words."""

@@ -48,7 +48,7 @@ VOICES = (
     *("en-gb-scotland+m1", "en-gb-x-rp+f4", "en-us+m7 -p 35 -s 150", "en-us+f3 -s 145"),
     "en-gb+f1 -p 60 -s 160",
 )
-"""Of flite and festival; then of espeak-ng, with pitch and speed."""
+"""Voices of flite and festival; then of espeak-ng, with pitch and speed."""
 HISS = 8.0  # of 32,768: the noise of a clean microphone
 QUIET = round(0.25 * RATE)  # samples before and after a sentence
 TALK = 60  # sentences of other talk

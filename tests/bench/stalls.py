@@ -117,7 +117,7 @@ class StalledGames:
         self.told: list[Fault] = []
         self.over, self.held = threading.Event(), threading.Event()
         self.wanted = ""
-        """The stage in which the next stall is to come."""
+        """The stage of the next stall."""
 
     def play(self) -> None:
         """Play games until the bench ends; while the process is `held` staff only look."""

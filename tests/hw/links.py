@@ -56,19 +56,19 @@ class FakeLink:
         self.faces: dict[str, str | None] = {}
         self.place = "front"
         self.breaks: dict[str, str] = {}
-        """Why what is asked for next is broken off, by what it is."""
+        """The reason why the next task is broken off, by task."""
         self.speaks = True
-        """Whether it has a voice that works."""
+        """Whether its voice works."""
         self.missed: set[str] = set()
-        """Places that it does not arrive at."""
+        """Places that it fails to reach."""
         self.slow: dict[str, int] = {}
-        """How often it is waited for in vain, by what is asked for, unless that is called off."""
+        """How many waits for a task time out, by task, unless the task is cancelled."""
         self._doing: tuple[str, dict[str, Any], Future[dict[str, Any]]] | None = None
         self._called_off = ""
         self.meanwhile: Callable[[str, float], None] = lambda do, time: None
-        """Is called with what was asked for when it is done: people do something then."""
+        """Called with a finished task: people act then."""
         self.offered: dict[str, str] = {}
-        """The buttons of its chest screen for open calls: who is called, by their keys."""
+        """The buttons of its chest screen for open calls: the called people, by their keys."""
         self.on_answer: Callable[[str], object] = lambda key: None
 
     @property

@@ -13,7 +13,7 @@ from tests.hw.pictures import Image
 
 WIDTH, HEIGHT = 640, 480
 CORNERS = ((40.0, 440.0), (600.0, 440.0), (500.0, 200.0), (140.0, 200.0))
-"""Where the table's corners are in the picture: left near, right near, right far, left far."""
+"""The table's corners in the picture: left near, right near, right far, left far."""
 
 TABLE = ((1.2, 5.0), (8.8, 5.0), (8.8, 5.8), (1.2, 5.8))
 SEATS = (2.0, 4.0, 6.0, 8.0)

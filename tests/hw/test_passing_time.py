@@ -13,7 +13,7 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_process.control_loop import AT_REST, ON_THE_WAY, TICK, ControlLoop
 
 TURNS = 50
-"""Turns of the loop in which a time that does not stand still would have come far."""
+"""Turns of the loop in which a running clock would have advanced far."""
 
 
 class HandClock:

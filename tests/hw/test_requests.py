@@ -60,7 +60,7 @@ def events(*presses: tuple[int, int, int]) -> bytes:
 
 
 PRESS_2 = events((4, 4, 0x7001F), (1, 3, 1), (0, 0, 0), (1, 3, 2), (0, 0, 0), (1, 3, 0), (0, 0, 0))
-"""As a keypad sends it: scan code, key down, report; held; let go."""
+"""As a keypad sends it: scan code, key down, report; held; released."""
 
 
 class TestButtons:

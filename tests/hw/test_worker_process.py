@@ -315,7 +315,7 @@ SCRIPTS = {
     "says no end": "print('x' * 9_000_000, flush=True); import time; time.sleep(60)",
     "is deaf": "import os, signal, time; signal.signal(15, signal.SIG_IGN); time.sleep(60)",
 }
-"""Children that cannot be relied on."""
+"""Unreliable children."""
 
 
 @pytest.fixture(params=["camera", "chest"])

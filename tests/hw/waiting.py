@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable
 
 PATIENCE = 10.0
-"""Seconds after which something that should happen is missed."""
+"""Seconds after which an expected event counts as missing."""
 
 
 async def until(so: Callable[[], bool], patience: float = PATIENCE) -> None:

@@ -30,7 +30,7 @@ FORGETFUL = PersuasionConfig(forgetting=0.9)
 DAILY = PersuasionConfig("bayes-ucb", "people", 0.9, "day")
 
 fresh = (f"p{number}" for number in count())
-"""A person for each example: they share a log, and must not disturb each other."""
+"""A new person for each example: examples share a log, and must not affect each other."""
 
 
 class Clock:

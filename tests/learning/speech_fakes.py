@@ -17,7 +17,7 @@ from tangy_tui.speech.evidence import AcousticEvidence, DecoderVocabulary, Expec
 PATIENCE = 10.0
 
 WORDS = {"c": "call number", "j": "tell a joke", "s": "stop", "y": "yes", "n": "no", "x": "salad"}
-"""What sounds mean that are made of one letter."""
+"""The meanings of sounds that consist of one letter."""
 
 
 def sound(letter: str, seconds: float = 0.5) -> bytes:

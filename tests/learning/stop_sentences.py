@@ -159,7 +159,7 @@ STOPPING = (
     "can't you stop that thing",
     "why don't you stop",
 )
-"""Their aim is that the robot, or the game, stops."""
+"""Sentences that aim to stop the robot, or the game."""
 
 MENTIONING = (
     "stop teasing her",
@@ -306,7 +306,7 @@ MENTIONING = (
     "my heart nearly stopped",
     "we stopped at a nice hotel",
 )
-"""They mention stopping, and their aim is another."""
+"""Sentences that mention stopping, with another aim."""
 
 STOPPING_TOO = (
     "call off the game",
@@ -848,7 +848,7 @@ STOPPING_WITH_ADJECTIVES = (
     "please stop the very loud robot",
     "stop this annoying blue robot please",
 )
-"""Whatever the robot is called, and however kindly or at the end it is asked."""
+"""Stops with any name for the robot, and with polite words at any place."""
 
 MENTIONING_WITH_ADJECTIVES = (
     "stop teasing the robot",

@@ -34,7 +34,7 @@ from tangy_tui.learning.reachable import joint_states
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 FEW = ForestSettings(trees=5)
-"""For promises that do not depend on how many trees there are."""
+"""For guarantees that do not depend on the number of trees."""
 
 
 def showing(*rows: tuple[Situation, str], id: str = "made") -> Demonstration:

@@ -35,7 +35,7 @@ DOORS = (
     *("exit", "leave", "phrases", "voice", "what", "what should I do?", "all right", "all is well"),
     *("expert", "clear", "faults", "y", "n", "yes", "no", "1", "# stop", ""),
 )
-"""What else is typed where stops are: `#` begins a comment, which nobody asks about."""
+"""Other words that are typed where stops are; `#` begins a comment, which needs no answer."""
 
 
 @pytest.mark.parametrize("sentence", STOPPING[::2])

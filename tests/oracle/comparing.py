@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 
 SHOWN = 12
-"""How many lines of a difference are shown for each file."""
+"""The number of lines of a difference that are shown for each file."""
 
 
 def differences(before: Path, after: Path) -> list[str]:

@@ -8,10 +8,10 @@ from time import monotonic
 from tests.support.terminal import TANGY, Terminal
 
 QUIET = 0.8
-"""Seconds without a byte after which a screen is taken to have settled."""
+"""Seconds without a byte after which a screen counts as settled."""
 
 LONGEST = 8.0
-"""Seconds after which a screen that never settles is taken as it is."""
+"""Seconds after which a screen that never settles is recorded as it is."""
 
 _GUIDED = ["teach", "--guided", "--teacher", "scripted", "--seed", "1", "--plain"]
 _TAUGHT = (_GUIDED, ["learn"])
@@ -84,7 +84,7 @@ _TEACH = [
 _HOME = [("Teach", "?"), ("", "\x1b")]
 _PLAY = [("pause", "e"), ("plays again", "2"), *(("", key) for key in ("3", "4", "6", "1", "?"))]
 _ROOMS = "iloeh"
-"""Keys of the home screen's choices that show what was learnt and run no game by the clock."""
+"""Keys of the home screen's choices that show learnt data and run no game by the clock."""
 
 
 def _scenes() -> list[Scene]:

@@ -75,13 +75,13 @@ def type_at_once(app: App[Any], *keys: str, at: float | None = None) -> None:
 
 
 LONGEST = 1.0
-"""Seconds of the processor after which a program that is never done is waited for no longer.
+"""CPU seconds after which `until_idle` no longer waits for a program that is always busy.
 
-Textual counts those of the clock: on a busy machine it gave up on a program that had not begun.
+Textual counts seconds of the clock: on a busy machine it gave up before a program had begun.
 """
 
 GLANCE = 0.02
-"""Seconds for which a thread is watched: it thinks if it uses a twentieth of them (Textual's)."""
+"""Seconds for watching a thread: it is busy if it uses a twentieth of them (as in Textual)."""
 
 
 def _to_be_painted(screen: Screen[Any]) -> bool:

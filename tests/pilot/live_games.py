@@ -36,13 +36,13 @@ class HeldLink(FakeLink):
         super().__init__(people)
         self.free = True
         self.stamps = 0
-        """How often the screen has said that it lives."""
+        """The number of the screen's signs of life."""
         self.most = 10_000
-        """So many lines it says, and then does nothing to its end."""
+        """It speaks this many lines, then completes nothing more."""
         self.held_by: set[str] = set()
         """The owners of stops that are not released."""
         self.released: list[str] = []
-        """Who has let it go each time, "" for all."""
+        """The people who released a stop, "" for all."""
 
     def alive(self) -> None:
         self.stamps += 1

@@ -34,7 +34,7 @@ FEW = (
     "emergency-stop", "laser-disconnected", "camera-occluded", "path-blocked", "voice-dead",
     "requests-silent", "unexplained",
 )  # fmt: skip
-"""The rules that these drills are drawn from, so that a new one does not change the pictures."""
+"""The rules for these drills, so that new rules do not change the pictures."""
 SIZES = pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 
 

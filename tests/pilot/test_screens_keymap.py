@@ -119,11 +119,11 @@ async def test_no_letter_changes_stored_data_on_any_panel(
 
 
 GAME_MOVES = {"p": "pause or go on", "full_stop": "one step"}
-"""The effect that a letter may have unasked: the simulated game runs or pauses."""
+"""Letters that take effect without a question: the simulated game runs or pauses."""
 
 PACE = ("less_than_sign", "greater_than_sign")
 STAFF_SAYS = {"i": "autonomy", "c": "call again", "o": "take over"}
-"""Remarks of staff in a live game, which take effect at once and can be revised."""
+"""Commands of staff in a live game that take effect at once and can be revised."""
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ GAMES = (
     (21, {"user1": "praise+ praise- praise+ neutral- praise+ scarcity- suggestion-"}),
     (2, {"user3": "neutral+", "user2": "suggestion+ suggestion?"}),
 )
-"""How many days ago, and what came of each request: complied (+), did not (-), not known (?)."""
+"""Days ago, and the outcome of each request: complied (+), did not (-), not known (?)."""
 
 
 @pytest.fixture

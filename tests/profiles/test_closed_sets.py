@@ -24,7 +24,7 @@ WORLDS = (
     "sim/tangy_sim/device_simulator/people.py",
     "hw/tangy_hw/robot_client/live_world.py",
 )
-"""The modules that say what an effect does to a world."""
+"""The modules that define an effect's result in a world."""
 
 
 def places(attribute: str) -> Iterator[tuple[str, int, set[str]]]:

@@ -15,7 +15,7 @@ from tests.support.declared import DECLARED, declared
 
 FIRST = 3
 MOST_FIRST = 0.6
-"""So many of the expected behaviours are among the first ones; in the order of files .42 are."""
+"""At least this share of the expected behaviours is first; in the order of files .42 are."""
 
 
 @pytest.mark.parametrize("name", DECLARED)

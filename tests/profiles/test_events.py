@@ -39,7 +39,7 @@ NOT_READ = {
     "SpeechNoted": "how people are spoken to stands in a table",
     "PersonForgotten": "it is for people who look at the log",
 }
-"""The records that the program writes and never reads, and why."""
+"""The records that the program writes and never reads, with reasons."""
 
 # ------------------------------------------------------------------ every place of every kind
 
@@ -196,7 +196,7 @@ OLD = (
 
 
 MOVED = {("staff action", "what"): "detail"}
-"""Where a later version keeps the value of a key."""
+"""The key in which a later version stores a value."""
 
 
 @pytest.mark.parametrize("row", OLD, ids=[f"{json.loads(row)[0]}-{n}" for n, row in enumerate(OLD)])

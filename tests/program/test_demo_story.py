@@ -18,7 +18,7 @@ from tangy_tui.learning.policies import need_policy
 from tangy_tui.text import demo as text
 
 MINUTES = (2, 5)
-"""How long the story takes to read, at the least and at the most."""
+"""The shortest and the longest time to read the story."""
 
 
 @cache

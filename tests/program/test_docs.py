@@ -19,7 +19,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 SPAN = re.compile(r"`(tangy(?: [^`]*)?)`")
 BLOCK = re.compile(r"^( *)```sh\n(.*?)^\1```", re.DOTALL | re.MULTILINE)
 HOLES = re.compile(r"^[A-Z][A-Z.*@,]*$|^\.\.\.$")
-"""Words that stand for others, as in `--data DIR`."""
+"""Placeholders, as in `--data DIR`."""
 
 
 def anchors(page: Path) -> set[str]:

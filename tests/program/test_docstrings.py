@@ -14,7 +14,7 @@ UNITS = r"""s ms min h m mm cm m/s rad rad/s 1/s Hz dB px bytes? radians degrees
 quantile likelihood likeness scores? standard\ deviations? times\ life responses? Beta 0\ to\ 1"""
 _ANY = "|".join(re.split(r"(?<!\\)\s", UNITS))
 UNIT = re.compile(rf"(?<![\w'])(?:{_ANY})(?![\w'])|%|P\(")
-"""Units, and the words for what has none."""
+"""Units, and words for quantities without one."""
 SHAPE = re.compile(r"\(\w+, ?\w*[,):]|BGR|RGB|grey")
 """A shape, or the kind of a picture."""
 NO_MEASURE = ("number", "numbers", "number_of", "word_or_number", "wrong")

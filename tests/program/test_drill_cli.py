@@ -19,7 +19,7 @@ from tangy_tui.text.drills import KEPT, NOTHING_KEPT
 Tangy = Callable[..., CompletedProcess[str]]
 
 KEYS = "0\n1\n"
-"""Nothing is wrong, and let it go on; a critical round asks for one more answer."""
+"""No fault, and let the game go on; a critical round needs one more answer."""
 
 
 def answers(rounds: int) -> str:

@@ -17,13 +17,13 @@ import pytest
 HOUSE = Path(__file__).parents[2]
 FLOORS = ("hw", "profiles", "sim", "tangy_tui")
 TABLE = Path(__file__).with_name("sentences.toml")
-"""How many sentences each module may still hold. Lower a number when you have moved some.
+"""The number of sentences that each module may still hold. Lower a number after moving some.
 
-Its table of exceptions names the modules whose sentences are best kept beside their cause, and why.
+Its table of exceptions names the modules whose sentences should stay beside their cause, and why.
 """
 
 CODE = re.compile(r"SELECT|CREATE|INSERT|\\|\(\?|</|\{\s*[a-z-]+:")
-"""Marks of SQL, regular expressions, markup and style sheets."""
+"""Patterns of SQL, regular expressions, markup and style sheets."""
 
 
 def said(text: str) -> bool:

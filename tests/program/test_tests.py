@@ -17,7 +17,7 @@ FLOORS = ("tangy_tui", "sim", "hw", "profiles")
 FILES = sorted(TESTS.rglob("*.py"))
 
 ELSEWHERE = {"_replace", "_display", "_ready", "_id"}
-"""Names that others gave: of named tuples, Textual's app, asyncio's loop, pytest's items."""
+"""Names by others: of named tuples, Textual's app, asyncio's loop, pytest's items."""
 
 MOST_PICTURES = 12
 

@@ -50,7 +50,7 @@ class CameraServer:
         }
         self.kinds["frozen"] = self.kinds["live"][:1]
         self.still = room(seed, *SIZE)
-        """What it looks at, without noise."""
+        """Its scene, without noise."""
         self.mode = "live"
         self._ended = Event()
         self._threads: list[Thread] = []

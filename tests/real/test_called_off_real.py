@@ -21,7 +21,7 @@ PROFILE = Path(__file__).parents[2] / "profiles/tangy_profiles/robots/tangy.toml
 
 BENCH, ROBOT, CAMERA = "tangy_sim.device_simulator", "tangy_hw.robot_process", "camera_child"
 STAGES = (BENCH, ROBOT, CAMERA)
-"""What is started one after the other."""
+"""The processes in the order of their start."""
 
 ENDINGS: dict[str, tuple[Callable[[Terminal], object], int]] = {
     "HUP": (lambda t: t.process.send_signal(signal.SIGHUP), 129),
@@ -30,7 +30,7 @@ ENDINGS: dict[str, tuple[Callable[[Terminal], object], int]] = {
     "esc": (lambda t: t.type("\x1b"), 0),
     "closed": (lambda t: t.close(), 129),
 }
-"""How a program on a terminal ends, and its exit status then."""
+"""The ways to end a program on a terminal, with the exit status of each."""
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 

@@ -28,8 +28,8 @@ UNPAIRED = "((document.body || {}).className || '').indexOf('unpaired') >= 0"
 CALL = Picture("Next number", "B-12", ("N-40", "O-75", "I-17", "G-52", "B-3"))
 SMALL, LARGE = (800, 480), (1280, 800)
 LETTER = 0.35
-"""Share of the window's height that a digit has at least: 32 mm on a tablet of seven inches, which
-is 28 minutes of arc at four metres; five are what a good eye needs."""
+"""The least height of a digit as a share of the window's: 32 mm on a tablet of seven inches, which
+is 28 minutes of arc at four metres; a good eye needs five."""
 
 
 @pytest.fixture(autouse=True)

@@ -82,7 +82,7 @@ def games(activity: str = "bingo", seeds: int = 100) -> Iterator[tuple[Turn, ...
 
 
 Mistake = tuple[int, int, int]
-"""Steps done right before it, which behaviour it is, and to whom it is done."""
+"""The number of correct steps before it, the index of the behaviour, and of its addressee."""
 
 MISTAKES = st.lists(
     st.tuples(st.integers(0, 6), st.integers(0, 99), st.integers(0, 99)), max_size=30

@@ -23,7 +23,7 @@ from tests.support.renaming import renamed
 
 MOST_STEPS = 400
 FILES = Path(__file__).parents[1] / "support" / "activities"
-"""Activities of kinds that do not ship."""
+"""Activities of kinds that are not shipped."""
 
 
 def whom(activity: DeclaredActivity, state: ActivityState, behaviour: str) -> str | None:

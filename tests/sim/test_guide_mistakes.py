@@ -28,7 +28,7 @@ from tests.sim.guided import (
 from tests.support.laws import tried
 
 NUMBERS_LEFT = 7
-"""Five numbers of a card touch all its lines; with fewer left than these all cards have one."""
+"""Five numbers of a card touch all its lines; with fewer than these left, every card has one."""
 
 
 def check_order(world: GuidedWorld) -> None:

@@ -12,7 +12,7 @@ from tests.support.declared import DECLARED, declared
 
 PEOPLE = ("user1", "user2", "user3")
 FRUITLESS = 6
-"""After so many behaviours in a row that lead nowhere, Tangy asks (`no-progress`)."""
+"""After this many behaviours in a row without effect, Tangy asks (`no-progress`)."""
 MOST = 300
 
 

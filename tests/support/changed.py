@@ -23,7 +23,7 @@ def changed_trivia(folder: Path, *changes: tuple[str, str]) -> DeclaredActivity:
 
 
 AGAIN = 'again = ["What do you think, {name}: {a}, {b} or {c}?"]\n'
-"""What the shipped quiz asks again who says nothing to a question."""
+"""The shipped quiz's question to a person who did not answer."""
 
 
 def patient_trivia(folder: Path) -> DeclaredActivity:

@@ -11,7 +11,7 @@ import pyte
 from tests.support.terminal import Terminal
 
 ASKED = b"\x1b[?2026$p"
-"""The program asks whether frames may be marked; then it marks each of them."""
+"""The program's query for marked frames; with a yes, it marks each of them."""
 YES = "\x1b[?2026;2$y"
 BEGIN, END = b"\x1b[?2026h", b"\x1b[?2026l"
 

@@ -17,13 +17,13 @@ from typing import Any
 import pytest
 
 SLOW_SECONDS = 900
-"""How long a slow test may take that does not say so itself."""
+"""The time limit of a slow test that sets none itself."""
 
 GRACE = float(os.environ.get("TANGY_TEST_GRACE", "60"))
 """Seconds that an interrupted test has to clean up."""
 
 AGAIN = 1.0
-"""Seconds between interruptions: one that comes in a task beside the test ends that task alone."""
+"""Seconds between interruptions: one in a background task ends only that task."""
 
 _STDERR = pytest.StashKey[int]()
 

@@ -12,7 +12,7 @@ AT_LENGTH = "at-length"
 """The Hypothesis profile with which `tests/program/test_laws_at_length.py` tries every law."""
 
 FEW = 30
-"""Examples of a law in the fast tests, which are to stay under five minutes."""
+"""Examples of a law in the fast tests, which must stay under five minutes."""
 
 Test = TypeVar("Test", bound=Callable[..., None])
 

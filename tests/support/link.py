@@ -16,7 +16,7 @@ import pyte
 from tests.support.terminal import PATIENCE, Terminal
 
 Answerer = Literal["far", "near", "nobody"]
-"""What answers the program's questions to the terminal: the person's own, a multiplexer beside
+"""The source of replies to the program's queries: the person's terminal, a multiplexer beside
 the program, or nothing."""
 
 

@@ -18,7 +18,7 @@ class Family:
     def __init__(self) -> None:
         self._mark = f"TANGY_TEST_FAMILY={uuid4().hex}"
         self.seen: dict[int, str] = {}
-        """The command of each that was ever seen, by its id."""
+        """The command of each process ever seen, by its id."""
 
     @property
     def environment(self) -> dict[str, str]:

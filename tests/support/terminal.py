@@ -21,10 +21,10 @@ from time import monotonic
 import pyte
 
 PATIENCE = 30.0
-"""Seconds after which something that should be on a screen is missed."""
+"""Seconds after which an expected text counts as missing."""
 
 KEY_PROTOCOL = re.compile(rb"\x1b\[[<>=][0-9;]*u")
-"""What turns the kitty keyboard protocol on and off; pyte would write its last letter."""
+"""Turns the kitty keyboard protocol on and off; pyte would write its last letter."""
 
 TANGY = str(Path(sys.executable).parent / "tangy")
 
@@ -43,7 +43,7 @@ class Terminal:
         self._screen = pyte.Screen(columns, lines)
         self._stream = pyte.ByteStream(self._screen)
         self.raw = b""
-        """Everything that was written to the terminal."""
+        """All output to the terminal."""
         self._parent, child = pty.openpty()
         self.resize(columns, lines)
         self.process = subprocess.Popen(  # noqa: S603 - our own program

@@ -24,7 +24,7 @@ class Wheels:
 
     def __init__(self, link: Connection) -> None:
         self.told: list[tuple[float, float]] = []
-        """When (on the monotonic clock), and how fast it drove, in m/s."""
+        """Times (on the monotonic clock) and speeds, in m/s."""
         self._link = link
         self._link.send(json.dumps({"op": "subscribe", "topic": "/odom"}))
         threading.Thread(target=self._hear, daemon=True).start()
