@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from textual.screen import Screen
@@ -148,20 +149,33 @@ class GamePicture:
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
         """Update the status line: robot, stage and note."""
-        now = as_present(self._supervision.world)
-        if now is not None and self._game and not self._supervision.over:
-            self._stage = self._workspace.activity.in_words(joint_state(now.ahead).situation)
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, self._workspace.activity),
                 robot=robot,
-                stage=OVER_NOW if self._supervision.over and self._game else self._stage,
+                stage=self._stage_now(),
                 game=self._game,
                 step=self._step,
                 note=note,
                 alarm=robot != "OK" and not robot.startswith(WAITS),
             )
         )
+
+    def show_stage(self) -> None:
+        """Update the stage on the status line during a behaviour, if the world tells it."""
+        if as_present(self._supervision.world) is None:
+            return
+        line = self._screen.query_one(StatusLine)
+        if line.status.stage != (stage := self._stage_now()):
+            line.show(replace(line.status, stage=stage))
+
+    def _stage_now(self) -> str:
+        if self._game and self._supervision.over:
+            return OVER_NOW
+        now = as_present(self._supervision.world)
+        if now is not None and self._game:
+            self._stage = self._workspace.activity.in_words(joint_state(now.ahead).situation)
+        return self._stage
 
     def why(self, chosen: int | None) -> WhyDialog | None:
         """Explain the chosen step, Tangy's question, or the last step; None: there is none."""

@@ -135,6 +135,7 @@ class PlayPanels(TangyScreen[Tally]):
             view,
             ViewSource(world, self.control, self.minutes, name, self.picture.said),
         )
+        self.picture.show_stage()
 
     def action_sensors(self) -> None:
         """Show the state of all devices above the game, which continues."""
