@@ -151,7 +151,7 @@ def examine_robot(
 
     pairing = {}
     if folder is not None and any(driver.kind == "page" for driver in robot.drivers.values()):
-        with suppress(OSError):  # for the chest screen's code, which is stored
+        with suppress(OSError):  # the chest screen's code must be stored before it is printed
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         pairing = keep_pairing(folder).to_json()
 

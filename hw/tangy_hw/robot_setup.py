@@ -20,7 +20,7 @@ class RobotSetup:
     Profiles are named as `load_robot` and similar functions take them. `drivers` (device ->
     settings with their kind) and `cameras` (device -> source) override the robot's profile.
     `requests` is a source of requests (see `perception.requests.sources`), `corners` are the
-    table's in its image. `faces` are feature vectors by person, of the kind `face_kind`. `pairing`
+    table's in its image. `faces` are the features by person, of the profile's models. `pairing`
     identifies tablets (see `drivers.chest_pairing`); without it they must pair again. `courtesies`
     are sentences for people whom the robot waits for (see `WaitExplanations`). `record` is a file
     for the scans of a manual drive; without a map, the pose is by odometry.

@@ -30,7 +30,7 @@ PAGE = "page"  # the kind of driver whose address is known once it is open
 
 
 class LinkedSensors:
-    """The devices of a robot, read through its process; satisfies `sensor_lines.Sensing`.
+    """The devices of a robot, read through its process; satisfies `text.sensors.Sensing`.
 
     Within `async with` it polls the state of the cameras. It shows the card that the game read
     last, and triggers no reading of its own.

@@ -124,7 +124,7 @@ class Workspace(Participants):
         self.register(self._users)
 
     def leave_resumed_game(self, room: Room | None) -> None:
-        """Return to those who take part now, and to the room that was chosen before the game."""
+        """Go back to the people who take part now, and to the room chosen before the game."""
         self.chosen_room = room
         self.register(self._users)
 

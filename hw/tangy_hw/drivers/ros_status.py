@@ -148,7 +148,7 @@ class RosStopButton:
         self._bridge.unsubscribe(self._topic, self._hear)
 
     def reading(self) -> Reading:
-        """Return whether it is pressed, with the age of that message."""
+        """Return the fact whether it is pressed, with the age of that message."""
         reading = self._newest.reading(self.name, OK, {"latched": self.latched})
         if self._changes_only and self._newest.stamped is not None:
             reading = reading._replace(age=min(reading.age, self._bridge.reading().age))

@@ -103,7 +103,7 @@ class ChooseDialog(Dialog[str | None]):
         self.query_one(Page).focus()
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
-        """Return the chosen option."""
+        """Close with the chosen option."""
         event.stop()
         self.answer(self._options[event.index].id)
 

@@ -56,7 +56,7 @@ class Level(Protocol):
 
 
 class Microphone(Protocol):
-    """The interface to the microphone; see `Ears`."""
+    """The interface to the microphone; see `SpeechInput`."""
 
     @property
     def live(self) -> bool:
