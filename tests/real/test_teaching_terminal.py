@@ -147,7 +147,7 @@ def test_a_small_window_shows_a_message_and_loses_nothing(
 @pytest.mark.slow
 def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal("teach", "--seed", "1", environment={"TERM": "dumb"})
-    terminal.until("or one of:")
+    terminal.until("Type what Tangy should do")
     terminal.type("greet everyone\n")
     terminal.until("Type Y to do it")
     terminal.settle(2 * REACTION_SECONDS)
