@@ -24,6 +24,9 @@ STATES: tuple[DeviceState, ...] = (OK, WARN, STALE, ERROR)
 Stale is not an error: nothing was received, so nothing is known, as in ROS diagnostics.
 """
 
+NEVER: Final = 3600.0
+"""The age of the data of a device that has sent none, in s; no data count as older."""
+
 Fact = float | bool | str
 """A device's measurement: a number, a boolean, or a word."""
 

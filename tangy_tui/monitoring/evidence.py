@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact
+from tangy_profiles.health import ERROR, NEVER, OK, STALE, WARN, Fact
 from tangy_profiles.robot import Robot
 from tangy_tui.interaction.reading_error import FusedLook
 from tangy_tui.learning.effects import Mismatch
@@ -42,7 +42,7 @@ def evidence_words(
         elif fact == "state":
             age = evidence.get(f"{head}.age")
             late = value == STALE and isinstance(age, float)
-            since = f" for {written(age)} s" if late and age is not None else ""
+            since = "" if not late or age is None else _for_so_long(float(age))
             parts.append(f"{device.label}: {STATES.get(str(value), str(value))}{since}")
         elif fact == "age" and f"{head}.state" in evidence:
             continue  # included with the state
@@ -57,6 +57,11 @@ def evidence_words(
         agree = f"{looks.agreeing} of {looks.taken} looks agree"
         told.append(f"{agree}, and one look is wrong about 1 in {often} times")
     return "; ".join(told)
+
+
+def _for_so_long(age: float) -> str:
+    """Say for how many s a device has sent no data."""
+    return " yet" if age >= NEVER else f" for {written(age)} s"
 
 
 def mismatch_words(mismatch: Mismatch) -> str:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Condition, FaultBook, FaultRule
-from tangy_profiles.health import Fact
+from tangy_profiles.health import NEVER, Fact
 from tangy_profiles.robot import Contact, load_robot
 from tangy_sim.worlds.devices import WELL, readings
 from tangy_sim.worlds.injection import KINDS
@@ -97,6 +97,12 @@ def test_an_unexplained_symptom_asks_the_teacher_with_its_evidence() -> None:
     assert words == (
         "after 'call number', all who asked for help stopped asking at the same moment"
     )
+
+
+@pytest.mark.parametrize(("age", "since"), [(1.7, " for 1.7 s"), (NEVER, " yet")])
+def test_the_evidence_tells_for_how_long_data_are_missing(age: float, since: str) -> None:
+    words = evidence_words({"screen.state": "STALE", "screen.age": age}, (), ROBOT)
+    assert words.endswith(f"no data{since}")
 
 
 def test_each_mismatch_is_listed_with_its_fault() -> None:

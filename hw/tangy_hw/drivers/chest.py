@@ -21,7 +21,7 @@ from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.worker_process import WorkerError, WorkerProcess
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
+from tangy_profiles.health import ERROR, NEVER, OK, STALE, WARN, Reading
 from tangy_profiles.reading import plain
 
 _LOG = logging.getLogger(__name__)
@@ -34,7 +34,6 @@ GONE_SECONDS = 3.0  # without an answer, after which a page counts as closed
 START_SECONDS = 20.0  # until its process reports a port; .2 s on an idle machine
 AGAIN_SECONDS = 1.0  # until a dead process is restarted
 END_SECONDS = 1.0
-NEVER = 3600.0
 
 
 @dataclass(eq=False, slots=True)

@@ -31,7 +31,7 @@ from tangy_hw.drivers.scip_codec import (
 from tangy_hw.drivers.scip_link import Link, open_link
 from tangy_hw.drivers.source_clock import SourceClock
 from tangy_hw.rate_estimator import RateEstimator
-from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Fact, Reading
+from tangy_profiles.health import ERROR, NEVER, OK, STALE, WARN, DeviceState, Fact, Reading
 
 NEAR = 0.15
 """A hand's breadth in m: nearer returns come from an object that covers the scanner."""
@@ -46,7 +46,6 @@ ANSWER_SECONDS = 1.0  # timeout of a command; scanners answer within 10 ms
 SILENT_SECONDS = 2.0  # without a scan, after which it reconnects
 AGAIN_SECONDS = (0.05, 0.1, 0.2, 0.5)  # until it retries; the last one repeats
 CLOCK = 1 << 24  # ms after which the scanner's clock wraps
-NEVER = 3600.0
 
 
 class _Refusal(DeviceError):

@@ -14,6 +14,7 @@ from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import Health
 
 BREAK_SECONDS = 20.0  # of real time, after which a cancelled command counts as over
+RETURN_SECONDS = 4.0  # of real time in which tablets connect again
 
 Diagnosed = Callable[[Health], Mapping[str, bool]]
 """Returns the codes of the faults that devices show, and whether each is critical."""
@@ -76,6 +77,15 @@ class Commands:
         if self.link.setup.stepped:
             with suppress(DeviceError):  # the devices' readings show the problem
                 self.do("settle")
+
+    def await_tablets(self) -> None:
+        """Wait a moment while only non-critical faults show: tablets return after a restart."""
+        until = time.monotonic() + RETURN_SECONDS
+        while time.monotonic() < until:
+            found = self.diagnosed(self.link.health())
+            if not found or any(found.values()):
+                return
+            self.link.beat()
 
     def _critical(self) -> str:
         """Return the code of a critical fault that the devices show, "" if there is none."""

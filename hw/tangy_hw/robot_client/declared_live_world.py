@@ -108,6 +108,7 @@ class DeclaredLiveWorld(LiveWorld):
             self.requests.ask_for(person)
         self.over = False
         self.commands.settle()
+        self.commands.await_tablets()
         return self.observe()
 
     def change(self, change: GameChange) -> None:

@@ -130,6 +130,7 @@ class LiveWorld(LivePlan):
         self._row_began = self.seconds - past.since_call(self.activity)
         self.over = False
         self.commands.settle()
+        self.commands.await_tablets()
         return self.observe()
 
     @property
