@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.games import Game
 
 STARTING = "Its devices are being started. It stands still until the game begins."
+STARTING_AGAIN = "Its devices are being started again. It stands still until the game goes on."
+GAME_KEPT = "The game is kept: begin a live game to go on with it."
 READY, NOW = "Ready: {}.", "Starting now: {} ..."
 PARTS = {
     "bench": "simulated devices and people",

@@ -10,7 +10,7 @@ from textual.constants import ESCAPE_DELAY
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE
-from tangy_tui.text.live_games import SWITCH_ON_DETAIL, parts_lines, switch_on_words
+from tangy_tui.text.live_games import GAME_KEPT, SWITCH_ON_DETAIL, parts_lines, switch_on_words
 from tangy_tui.ui.interruption import ask_about_interrupted
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ async def _play(
         if set_up:
             world = await _set_up(program, setup, robot)
         else:
-            world = await _switch_on(program, robot)
+            world = await _switch_on(program, robot, again=before is not None)
         if world is None:
             return None
         from tangy_tui.app.joining import Admission, keep_cards
@@ -167,10 +167,13 @@ async def _set_up(
     return setup.world if begins else None
 
 
-async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWorld | None:
+async def _switch_on(
+    program: Program, robot: SwitchingOn[LiveWorld], *, again: bool = False
+) -> LiveWorld | None:
     """Switch a robot on behind a dialog; None if that was cancelled, or failed.
 
-    A robot that came on just as it was cancelled is switched off again.
+    A robot that came on just as it was cancelled is switched off again. `again` says that a game
+    goes on then, which is kept otherwise.
     """
     from tangy_hw.cancellation import Cancelled
     from tangy_tui.ui.dialogs.message import MessageDialog
@@ -178,26 +181,32 @@ async def _switch_on(program: Program, robot: SwitchingOn[LiveWorld]) -> LiveWor
 
     profile = program.workspace.robot
     dialog = SwitchingOnDialog(
-        profile.title, robot.cancel, lambda: parts_lines(robot.parts, robot.done, profile)
+        profile.title,
+        robot.cancel,
+        lambda: parts_lines(robot.parts, robot.done, profile),
+        again=again,
     )
     program.push_screen(dialog)
     await dialog.shown()
     await asyncio.sleep(TYPED_AHEAD_SECONDS)
     opening = asyncio.ensure_future(asyncio.to_thread(robot.open))
     opening.add_done_callback(_heard)
+    told = [GAME_KEPT] if again else []
     try:
         world = await asyncio.shield(opening)
-        return None if dialog.called_off else world
+        if not dialog.called_off:
+            return world
     except Cancelled:
-        return None
+        pass
     except TangyError as error:
-        said = str(error)
+        told.insert(0, str(error))
     except asyncio.CancelledError:  # the program is ending
         robot.cancel()
         raise
     finally:
         dialog.over()
-    await program.push_screen_wait(MessageDialog(said, title="Not yet"))
+    if told:
+        await program.push_screen_wait(MessageDialog(" ".join(told), title="Not yet"))
     return None
 
 

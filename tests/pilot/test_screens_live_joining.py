@@ -9,6 +9,7 @@ import pytest
 
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.errors import TangyError
 from tangy_tui.app.game_commands import SetAutonomy
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -27,9 +28,13 @@ class Robot:
         self.off = 0
         self.links: list[HeldLink] = []
         self._workspace = workspace
+        self.broken = False
+        """Whether it does not come on."""
 
     @contextmanager
     def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
+        if self.broken:
+            raise TangyError("The laser scanner does not answer.")
         people = tuple(self._workspace.names)
         self.groups.append(people)
         link = HeldLink(people)
@@ -71,3 +76,21 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         assert tuple(live(pilot).world.called)[: len(called)] == called
         assert not live(pilot).control.going  # as before
         assert live(pilot).control.autonomy.level == "each" and live(pilot).games == 2
+
+
+@pytest.mark.slow
+async def test_a_game_is_kept_if_the_robot_does_not_come_on_again(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    robot = Robot(workspace)
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        robot.broken = True
+        await pilot.press(":", *"add Berta", "enter")
+        await until_shown(pilot, lambda: "does not answer" in pilot.text())
+        assert "The game is kept" in pilot.text()

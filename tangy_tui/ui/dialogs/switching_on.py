@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.text.live_games import CALLED_OFF, STARTING
+from tangy_tui.text.live_games import CALLED_OFF, STARTING, STARTING_AGAIN
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
@@ -31,6 +31,8 @@ class SwitchingOnDialog(Dialog[None]):
         title: str,
         call_off: Callable[[], None],
         parts: Callable[[], Sequence[str]] = tuple,
+        *,
+        again: bool = False,
     ) -> None:
         """Create the dialog.
 
@@ -38,11 +40,13 @@ class SwitchingOnDialog(Dialog[None]):
             title: the robot's title.
             call_off: cancels the start; may be called more than once.
             parts: returns lines with the parts that are started, and the one in progress.
+            again: whether a game goes on then, which a person has joined.
         """
         super().__init__(None)
         self._title = clean(title)
         self._call_off = call_off
         self._parts = parts
+        self._then = STARTING_AGAIN if again else STARTING
         self._told: Sequence[str] = ()
         self.called_off = False
         """Whether the start was cancelled."""
@@ -92,5 +96,5 @@ class SwitchingOnDialog(Dialog[None]):
             return Content.assemble(head, "\n\n", CALLED_OFF)
         parts = [f"\n{clean(line)}" for line in self._told]
         return Content.assemble(
-            head, *parts, "\n\n", STARTING, "\n\n", ("ESC", "$success bold"), "  leave it off"
+            head, *parts, "\n\n", self._then, "\n\n", ("ESC", "$success bold"), "  leave it off"
         )
