@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import io
+import os
+from itertools import count
 from pathlib import Path
-from typing import cast
+from typing import TextIO, cast
 
 import pytest
 
@@ -20,6 +21,21 @@ from tangy_tui.verbs.live_lines import LiveLines
 from tests.hw.links import FakeLink
 
 RESUMES = "tangy live --resume"
+CALL = 2  # Tangy greets the group before
+
+
+def joins_at_the_first_call(link: FakeLink) -> TextIO:
+    """Return standard input on which Berta is added when Tangy first calls a number."""
+    reads, writes = os.pipe()
+    performed = count(1)
+
+    def meanwhile(do: str, time: float) -> None:
+        if do == "perform" and next(performed) == CALL:
+            os.write(writes, b"add Berta\n")
+            os.close(writes)
+
+    link.meanwhile = meanwhile
+    return os.fdopen(reads)
 
 
 @pytest.mark.slow
@@ -27,11 +43,12 @@ def test_a_game_is_kept_if_the_robot_does_not_come_on_again(
     taught: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     workspace = Workspace(taught)
-    monkeypatch.setattr("sys.stdin", io.StringIO("wait until called\nadd Berta\n"))
     policy, _ = load_policy(workspace.store, workspace.activity)
     people = tuple(workspace.names)
+    link = FakeLink(people)
+    monkeypatch.setattr("sys.stdin", joins_at_the_first_call(link))
     world = LiveWorld(
-        workspace.activity, people, cast(RobotLink, FakeLink(people)),
+        workspace.activity, people, cast(RobotLink, link),
         load_robot(), workspace.room, seed=1, names=workspace.names, pace=30.0,
     )  # fmt: skip
     console = LiveLines(workspace, 1, "Ada", None)
