@@ -39,7 +39,7 @@ GOES_ON_LATER = "The game is not over: start Tangy again to go on with it."
 NOTHING_TO_STOP = "There is no game to stop: no Tangy shows one here."
 RUNNING_HERE = "Tangy is already open in another window, so here you only watch."
 ASKED_TO_STOP = "STOP was sent."
-STOPPED_HERE = "You stopped the robot. Only the console that drives can let it go on."
+STOPPED_HERE = "You stopped the robot. It goes on when staff say so where the game runs."
 HELP = (
     "You see another console's game, as it is shown there. Your keys do not change it. "
     "STOP works here as well: it stops the robot at once, and the log says that it was you."
@@ -63,7 +63,7 @@ def stopped_by_guest(guest: str, driver: str) -> str:
 
 def driver_words(view: GameView) -> str:
     """Tell who controls the game, and where it is played."""
-    return f"{view.driver} drives, {WORLDS[view.world]}"
+    return f"{view.driver} runs the game, {WORLDS[view.world]}"
 
 
 def waiting_words(view: GameView, name: Name) -> str:
