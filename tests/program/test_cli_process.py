@@ -119,7 +119,7 @@ def test_a_killed_writer_releases_the_folder(tmp_path: Path) -> None:
         taught.wait(60)
     again = tangy("teach", "--plain", *data, home=tmp_path)
     assert again.returncode == 0
-    assert b"demonstration of 1 steps" in again.stdout
+    assert b"demonstration of 1 step " in again.stdout
 
 
 @pytest.mark.slow
@@ -133,4 +133,4 @@ def test_ctrl_c_ends_a_session_by_lines_and_keeps_its_steps(tmp_path: Path) -> N
         finally:
             taught.kill()
     again = tangy("teach", "--plain", *data, home=tmp_path)
-    assert b"demonstration of 1 steps" in again.stdout
+    assert b"demonstration of 1 step " in again.stdout
