@@ -17,6 +17,7 @@ from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, screen_text
+from tests.support.waiting import until_shown
 
 
 def program(workspace: Workspace) -> Program:
@@ -159,11 +160,15 @@ async def test_a_long_remark_cuts_no_list_in_the_middle(run: Run, workspace: Wor
         teach = next(one for one in pilot.app.screen_stack if isinstance(one, TeachScreen))
         unseen = teach.query_one("#unseen").region
         assert unseen.y < box.y < unseen.bottom, "the remark covers a part of the list"
-        shown = screen_text(pilot.app).splitlines()[box.y - 1]
-        assert "still to show: " in shown
-        assert shown.rstrip().endswith("more")
+
+        def shown() -> str:
+            return screen_text(pilot.app).splitlines()[box.y - 1].rstrip()
+
+        await until_shown(pilot, lambda: shown().endswith("more"))  # it is laid out again
+        assert "still to show: " in shown()
+        one_line = shown()
         await pilot.press("escape")
         await pilot.pause()
         both = " ".join(screen_text(pilot.app).splitlines()[unseen.y : unseen.bottom])
         assert "still to show" in both
-        assert len(both.split()) > len(shown.split())
+        assert len(both.split()) > len(one_line.split())
