@@ -1,4 +1,4 @@
-"""The ways in which staff end a game, or interrupt it for a new person."""
+"""The ways in which staff stop or end a game, or interrupt it for a new person."""
 
 from __future__ import annotations
 
@@ -22,12 +22,14 @@ LEAVES_SECONDS = 1.0  # in which the current behaviour is aborted
 
 
 class EndingGames:
-    """The part of the controller that ends games."""
+    """The part of the controller that stops and ends games."""
 
     supervision: Supervision
     robot: RobotControls
     autonomy: AutonomyDial
     stopped: bool
+    stopped_by = ""
+    """The onlooker who stopped the robot last; empty: staff at this console."""
     going: bool
     _turn: threading.RLock
 
@@ -61,6 +63,16 @@ class EndingGames:
         self.supervision.stopped_by_staff()
         self.robot.stop(ENDED)
 
+    def _stop(self, by: str) -> list[Result]:
+        before, self.stopped, self.going = self.stopped, True, False
+        if by or not before:
+            self.stopped_by = by
+        self.supervision.stopped_by_staff()
+        self.robot.stop()
+        if by or not before:
+            self.note("stopped", by=by)
+        return [StaffNote("stopped")]
+
     def _end(self) -> list[Result]:
         self.note("ended")
         game = self.supervision
@@ -83,8 +95,16 @@ class EndingGames:
         return [joins]
 
     def follow(self, before: EndingGames) -> None:
-        """Go on as the controller of a game that a person has joined, perhaps before a step."""
+        """Go on as the controller of a game that a person has joined, perhaps before a step.
+
+        A STOP that fell while the robot was switched on again holds: the game begins when staff let
+        it go on. Attach this controller to the door first, so that none falls between the two.
+        """
         self.goes_on = before.goes_on
+        if before.stopped:
+            self.stopped, self.going, self.goes_on = True, False, True
+            self.stopped_by = before.stopped_by
+            self.robot.stop()
         self.autonomy.turn(before.autonomy.level)
         gathering = self.supervision.game.changes.gathering
         if gathering is not None:

@@ -313,14 +313,6 @@ class GameController(EndingGames):
             self.note("drove")
             self._tell_all()
 
-    def _stop(self, by: str) -> list[Result]:
-        before, self.stopped, self.going = self.stopped, True, False
-        self.supervision.stopped_by_staff()
-        self.robot.stop()
-        if by or not before:
-            self.note("stopped", by=by)
-        return [StaffNote("stopped")]
-
     def _go_on(self) -> list[Result]:
         if self.stopped:
             if self.supervision.halted is None:
@@ -377,7 +369,7 @@ class GameController(EndingGames):
     def refusal(self, *, asking: bool = True) -> StaffNote | None:
         """Return what staff have to do first, None if nothing."""
         if self.stopped:
-            return StaffNote("stopped first")
+            return StaffNote("stopped first", words=self.stopped_by)
         if self.supervision.halted is not None:
             return StaffNote("halted first")
         if asking and self.supervision.question is not None:

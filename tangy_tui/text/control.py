@@ -115,7 +115,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
     """Describe the result of a command in a sentence."""
     about = noted.about
     if by_keys and (words := BY_KEYS.get(noted.kind)):
-        return words
+        return words.replace("Tangy was stopped", _stopper(noted))
     match noted.kind:
         case "paused":
             return "Paused: Tangy does nothing more after this. Type: go on."
@@ -199,7 +199,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
                 "Tangy go on."
             )
         case "stopped first":
-            return "Not now: Tangy was stopped. Type first: go on."
+            return f"Not now: {_stopper(noted)}. Type first: go on."
         case "asks first":
             return "Tangy is asking: answer first, or type: give back."
         case "halted first":
@@ -250,6 +250,10 @@ DRIVE_HELP = (
 def stands_words(why: str) -> str:
     """Tell why the robot does not drive."""
     return f"Tangy stands still: {why}."
+
+
+def _stopper(noted: StaffNote) -> str:
+    return f"{noted.words} stopped Tangy" if noted.words else "Tangy was stopped"
 
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."

@@ -80,10 +80,14 @@ async def play_live(
     while played is not None and played.control.joined:
         past = resume_joined(workspace, played.world.played_in)
         policy, left = played.control.supervision.policy, played.games - played.tally.games
-        played = await _play(
-            program, opening, policy, games=left, seed=seed, teacher=teacher, past=past,
-            setup=setup, before=played,
-        )  # fmt: skip
+        before = played
+        try:
+            played = await _play(
+                program, opening, policy, games=left, seed=seed, teacher=teacher, past=past,
+                setup=setup, before=before,
+            )  # fmt: skip
+        finally:
+            workspace.door.detach(before.control)
 
 
 async def _play(
@@ -132,6 +136,7 @@ async def _play(
         screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
         screen.control.admission = Admission(workspace, world)
         if before is not None:
+            workspace.door.attach(screen.control)
             screen.control.follow(before.control)
             screen.picture.goes_on = before.control.goes_on
             keep_cards(before.world.known_cards, world)

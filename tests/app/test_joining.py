@@ -19,6 +19,7 @@ from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import (
     AskFor,
     GoesAway,
+    GoOn,
     Joins,
     SetAutonomy,
     SetPace,
@@ -46,7 +47,12 @@ class LiveGame:
     """A live game over a fake link, which people can join."""
 
     def __init__(
-        self, workspace: Workspace, past: PastGame | None = None, *, goes_on: bool = False
+        self,
+        workspace: Workspace,
+        past: PastGame | None = None,
+        *,
+        goes_on: bool = False,
+        before: GameController | None = None,
     ) -> None:
         policy, _ = load_policy(workspace.store, workspace.activity)
         self.workspace = workspace
@@ -58,6 +64,8 @@ class LiveGame:
         supervision = workspace.supervision(policy, SEED, asks=True, world=self.world)
         self.control = GameController(supervision, "Ada", robot=self.world, past=past)
         self.control.goes_on = goes_on
+        if before is not None:
+            self.control.follow(before)
         self.control.admission = Admission(workspace, self.world)
         self.control.begin()
 
@@ -149,6 +157,25 @@ def test_what_staff_have_set_stays_if_somebody_joins_before_a_step(taught: Path)
     after.control.follow(before.control)
     assert after.control.autonomy.level == "each" and after.world.pace == 40
     assert after.world.game_plan == before.world.game_plan
+    workspace.close()
+
+
+@pytest.mark.parametrize("steps", [0, 3])
+def test_a_stop_while_the_robot_is_switched_on_again_holds(taught: Path, steps: int) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.play(steps)
+    assert before.told(Joins("Berta")).kind == "joins"
+    before.control.apply(StopRobot(by="Nina"))
+    past = resume_joined(workspace, LIVE)
+    after = LiveGame(workspace, past, before=before.control)
+    assert after.control.stopped and after.control.supervision.over  # it has not begun
+    assert "release" not in after.link.told and after.link.told[-1].startswith("stop")
+    after.control.apply(GoOn())
+    assert after.control.begin() and after.control.phase == "running"
+    assert not after.control.stopped and "user5" in after.world.people
+    after.control.apply(StopRobot(by="Nina"))
+    assert after.told(Joins("Carl")) == StaffNote("stopped first", words="Nina")
     workspace.close()
 
 

@@ -196,7 +196,8 @@ class PlayScreen(PlayStaff):
     def on_unmount(self) -> None:
         """End the game when the screen is closed."""
         self.control.changed = lambda: None
-        self._workspace.door.detach(self.control)
+        if not self.control.joined:  # an onlooker may stop the robot while it is switched on again
+            self._workspace.door.detach(self.control)
         self._end_game()
         self._voice.hush()
 

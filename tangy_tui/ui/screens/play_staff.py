@@ -83,6 +83,8 @@ class PlayStaff(PlayPanels):
         loop = asyncio.get_running_loop()
 
         def stopped(guest: str) -> None:
+            if not self.is_running:  # the robot is being switched on again, without this screen
+                return
             self._show_stopped()
             self._tell_now(stopped_by_guest(guest, self.control.by), "bad")
 
@@ -93,6 +95,10 @@ class PlayStaff(PlayPanels):
             self.control, lambda s: loop.call_soon_threadsafe(self._stood_still, s)
         )
         self.set_interval(LOOK_SECONDS, self._guard.look)
+        if self.control.stopped_by:  # while the robot was switched on again
+            stopped(self.control.stopped_by)
+        elif self.control.stopped:
+            self._show_stopped()
 
     def _next(self) -> list[Event]:
         """Carry out the next step, unless the program was just frozen."""
@@ -301,7 +307,7 @@ class PlayStaff(PlayPanels):
         """Accept the condition that Tangy asks about, after confirmation."""
         asking = self._asking
         if self.control.stopped:
-            self._take([StaffNote("stopped first")])
+            self._take([StaffNote("stopped first", words=self.control.stopped_by)])
         elif asking is None or not asking.acceptable:
             self._tell_now(NOT_ACCEPTABLE, "dim")
         else:
