@@ -13,6 +13,7 @@ from typing import Protocol
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
+from tangy_profiles.declared.memory import GameMemory, with_player
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, GameStep
 from tangy_profiles.game_rules import GamePlan
@@ -120,11 +121,11 @@ class PastGame:
         return self.beginning.world or SIMULATED
 
     def joined_by(self, person: str, unread: str, place: int | None = None) -> PastGame:
-        """Return the game with one person more, who has not asked for anything and has no card.
+        """Return the game with one person more, of whom nothing is known yet.
 
         Args:
             person: the id.
-            unread: the state of a card that was not read.
+            unread: the state of a person of whom nothing is known.
             place: the person's place from 0; None: after the others.
         """
         there = self.beginning.people
@@ -138,7 +139,15 @@ class PastGame:
                 return state
             return state._replace(users=(*state.users[:at], new, *state.users[at:]))
 
-        steps = tuple(replace(step, after=among(step.after)) for step in self.steps)
+        def knowing(memory: GameMemory | None) -> GameMemory | None:
+            if memory is None or any(who == person for who, _ in memory.acts):
+                return memory
+            return with_player(memory, person, at)
+
+        steps = tuple(
+            replace(step, after=among(step.after), memory=knowing(step.memory))
+            for step in self.steps
+        )
         beginning = replace(self.beginning, people=(*there[:at], person, *there[at:]))
         return replace(self, beginning=beginning, steps=steps)
 

@@ -333,6 +333,7 @@ NoteKind = Literal[
     "nothing asked",
     "no name",
     "nobody joins",
+    "teams play",
     "known already",
     "which person",
     "most people",

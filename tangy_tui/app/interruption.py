@@ -37,9 +37,9 @@ def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
 def can_join(workspace: Workspace, past: PastGame) -> bool:
     """Return whether people can join an interrupted game that is resumed.
 
-    Simulated people cannot, nor can people join an activity that keeps facts of each person.
+    Simulated people cannot; where teams play, the teams stay the same.
     """
-    return past.world != SIMULATED and bool(workspace.activity.deck.columns)
+    return past.world != SIMULATED and not workspace.activity.teams
 
 
 def take_up(workspace: Workspace, past: PastGame) -> TakenUp:

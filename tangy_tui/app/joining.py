@@ -67,8 +67,8 @@ class Admission:
         people, room = workspace.people, workspace.room
         if not name:
             return StaffNote("no name")
-        if not workspace.activity.deck.columns:
-            return StaffNote("nobody joins")
+        if workspace.activity.teams:
+            return StaffNote("teams play")
         for person in people:
             if folded(name) in (folded(person.name), folded(person.id)):
                 return StaffNote("known already", person.id)

@@ -79,6 +79,7 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
 REFUSALS: tuple[NoteKind, ...] = (
     "no name",
     "nobody joins",
+    "teams play",
     "known already",
     "which person",
     "most people",
@@ -157,7 +158,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"{name(about)} is here."
         case "joins":
             return f"{name(about)} joins: {noted.words}. Tangy sets itself up for one more person."
-        case "no name" | "nobody joins" | "not at front" | "joining" as why:
+        case "no name" | "nobody joins" | "teams play" | "not at front" | "joining" as why:
             return joining.REFUSED[why]
         case "known already":
             return joining.known_words(name(about))

@@ -8,7 +8,8 @@ from tangy_tui.text.numbers import listed
 
 REFUSED = {
     "no name": "Type the name as well, as in: add Berta.",
-    "nobody joins": "Nobody new can join this game. Add them before the next one.",
+    "nobody joins": "Nobody new can join a simulated game. Add them before the next one.",
+    "teams play": "Teams play this game: seat the new person with one of them.",
     "joining": "Not now: somebody is just joining. Say it again when the game goes on.",
     "not at front": "Tangy could not drive to the front, so nobody has joined yet. Try again.",
 }

@@ -32,9 +32,9 @@ LEFT = ((4, "user1"), (7, "user3"))
 """The number of steps after which each person left."""
 
 
-def live(name: str) -> DeclaredLiveWorld:
+def live(name: str, people: tuple[str, ...] = PEOPLE) -> DeclaredLiveWorld:
     return DeclaredLiveWorld(
-        declared(name), PEOPLE, cast(RobotLink, FakeLink(PEOPLE)), load_robot(), load_room(),
+        declared(name), people, cast(RobotLink, FakeLink(people)), load_robot(), load_room(),
         seed=SEED,
     )  # fmt: skip
 
@@ -121,6 +121,27 @@ def test_absent_people_stay_absent_after_a_resume(of: str) -> None:
     assert resumed.away == whole.away == {who for _, who in LEFT}
     assert resumed.game.here == whole.game.here == ("user2",)
     assert states(play(resumed, 9, since=7)) == states(play(whole, 9, since=7))
+
+
+@pytest.mark.parametrize("name", [one for one in DECLARED if not declared(one).teams])
+@pytest.mark.parametrize("place", [0, 2, None])
+def test_a_person_joins_with_nothing_known_of_them(name: str, place: int | None) -> None:
+    whole = live(name)
+    whole.begin()
+    past = past_of(name, play(whole, 6))
+    past = past.joined_by("new", declared(name).unread, place)
+    assert past == past.joined_by("new", declared(name).unread, place)
+    people = past.beginning.people
+    joined = live(name, people)
+    state = joined.resume(past)
+    game, before = joined.game, whole.game
+    assert people.index("new") == (len(PEOPLE) if place is None else place)
+    assert {*game.players} == {*people} == {user.id for user in state.users}
+    assert game.players[game.turn] == before.players[before.turn]
+    assert [one for one in game.players if one != "new"] == [*before.players]
+    assert [one for one in game.circle if one != "new"] == [*before.circle]
+    assert game.acts["new"] == 0 and not any(whose == "new" for _, whose in game.values)
+    assert play(joined, 5, since=6)
 
 
 def test_a_request_survives_a_kill_without_a_sign() -> None:

@@ -6,7 +6,7 @@ the log has all of them, and an interrupted game continues from there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tangy_profiles.codec import Count, Sparse
@@ -95,6 +95,26 @@ def game_from(
         name, person, turn = memory.screen
         game.screen = name, person or None, turn
     return game
+
+
+def with_player(memory: GameMemory, player: str, seat: int) -> GameMemory:
+    """Return the state of a game with one player more, of whom nothing is known yet.
+
+    Args:
+        memory: the state.
+        player: the id.
+        seat: the player's place from 0, as people sit. If turns go by seats, it is also the
+            player's turn; else that comes last.
+    """
+    by_seats = not memory.circle
+    turn = seat if by_seats else len(memory.acts)
+    sitting = memory.circle[:seat], memory.circle[seat:]
+    return replace(
+        memory,
+        acts=(*memory.acts[:turn], (player, 0), *memory.acts[turn:]),
+        turn=memory.turn + (turn <= memory.turn),
+        circle=() if by_seats else (*sitting[0], player, *sitting[1]),
+    )
 
 
 def _fits(declaration: Declaration, players: tuple[str, ...], memory: GameMemory) -> bool:
