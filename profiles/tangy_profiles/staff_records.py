@@ -8,6 +8,8 @@ from tangy_profiles.codec import Count, Sparse
 from tangy_profiles.records import EventRecord, kind
 
 StaffActionKind = Literal[
+    "paused",
+    "went on",
     "stopped",
     "let go on",
     "took over",

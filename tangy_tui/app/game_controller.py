@@ -19,7 +19,6 @@ from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.answers import AnswerCollector
 from tangy_tui.app.autonomy import AutonomyDial
-from tangy_tui.app.ending_games import EndingGames
 from tangy_tui.app.fault_commands import Result, attend
 from tangy_tui.app.game_commands import (
     AT_ONCE,
@@ -52,6 +51,7 @@ from tangy_tui.app.game_commands import (
     Tell,
     VoidResponse,
 )
+from tangy_tui.app.pausing_games import PausingGames
 from tangy_tui.app.plan_controls import GamePlanControls
 from tangy_tui.app.robot_controls import RobotControls
 from tangy_tui.app.staff_view import StaffView, StaffWatch
@@ -65,7 +65,7 @@ ControllerOutput: TypeAlias = Result | Verification
 TOOK_OVER = "You say what Tangy does next."
 
 
-class GameController(EndingGames):
+class GameController(PausingGames):
     """Games in which staff can intervene. `begin` each, then call `next` until it is over."""
 
     def __init__(
@@ -103,11 +103,8 @@ class GameController(EndingGames):
         """Verifies answers to Tangy's questions; `answer` then carries them out."""
         self._void = void
         self.going = True
-        """Whether the next behaviour may run; False: the game is paused."""
         self.single = False
-        """Whether the game pauses after the next behaviour."""
         self.paused_itself = False
-        """Whether the program paused the game, and not staff."""
         self._holds = 0  # open questions that hold the game
         self._turn = threading.RLock()
         """Guards the supervision and the robot."""
@@ -159,6 +156,8 @@ class GameController(EndingGames):
                 self._watch.begin(world.seconds)
             else:
                 self._watch.resume(world.seconds, past, world.activity)
+                if not self.going:
+                    self._watch.pause(world.seconds)
             return events
 
     def next(self) -> list[Event]:
@@ -253,8 +252,7 @@ class GameController(EndingGames):
             case StopRobot(by):
                 return self._stop(by)
             case Pause(unasked):
-                self.going, self.paused_itself = False, unasked
-                return [StaffNote("paused")]
+                return self._pause(unasked=unasked)
             case GoOn():
                 return self._go_on()
             case OneStep():
@@ -301,39 +299,11 @@ class GameController(EndingGames):
             self.robot.hold_calls(held=bool(self._holds))
             self._tell_all()
 
-    @contextmanager
-    def driving(self) -> Iterator[None]:
-        """Let staff drive by keys while the game waits."""
-        going, self.going, self.robot.driving = self.going, False, True
-        try:
-            yield
-        finally:
-            self.robot.driving = False
-            self.going = going and not self.stopped
-            self.note("drove")
-            self._tell_all()
-
-    def _go_on(self) -> list[Result]:
-        if self.stopped:
-            if self.supervision.halted is None:
-                self.robot.release()
-            self.stopped = False
-            self.note("let go on")
-        if self.supervision.over and self.robot.frozen:
-            self.robot.release(everybody=True)
-        self.going, self.paused_itself = True, False
-        return [StaffNote("goes on")]
-
-    def _one_step(self) -> list[Result]:
-        if refused := self.refusal():
-            return [refused]
-        self.single = self.going = True
-        return [StaffNote("one step")]
-
     def _take_over(self) -> list[Result]:
         if refused := self.refusal():
             return [refused]
         self.taking_over = self.going = True
+        self._watch.go_on()
         self.autonomy.reset()
         self.note("took over")
         return [StaffNote("takes over")]

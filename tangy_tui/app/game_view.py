@@ -41,6 +41,8 @@ class GameView:
     """Since the game began, in s, rounded down."""
     minutes: Sparse[Count] = 0
     """The planned length of the session in minutes; 0: no limit."""
+    paused: Sparse[Count | None] = None
+    """How long the pause has lasted, in s, rounded down; null: the game is not paused."""
     people: Sparse[tuple[PersonNow, ...]] = ()
     """The state of each person, with times in whole s."""
 
@@ -70,6 +72,7 @@ def view_of(control: GameController) -> GameView | None:
             pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
             room=supervision.game.room,
             seconds=int(seen.seconds),
+            paused=None if seen.paused is None else int(seen.paused),
             minutes=supervision.game.changes.plan.minutes,
             people=tuple(_in_whole_seconds(person) for person in seen.people),
         )

@@ -54,6 +54,8 @@ class StaffView:
     called: tuple[int, ...]
     people: tuple[PersonNow, ...]
     pace: float = 0.0
+    paused: float | None = None
+    """How long the pause has lasted, in s; None: the game is not paused."""
 
 
 class StaffWatch:
@@ -67,6 +69,7 @@ class StaffWatch:
     def _clear(self) -> None:
         self._began: float | None = None
         self._ended: float | None = None
+        self._paused: float | None = None
         self._asks: dict[str, float] = {}
         self._visited: dict[str, float] = {}
 
@@ -79,6 +82,15 @@ class StaffWatch:
         """Stop the clock at a time in s: the game is over. Later calls change nothing."""
         if self._ended is None:
             self._ended = now
+
+    def pause(self, now: float) -> bool:
+        """Begin a pause at a time in s; return False if the game is already paused."""
+        begins, self._paused = self._paused is None, now if self._paused is None else self._paused
+        return begins
+
+    def go_on(self) -> None:
+        """End a pause."""
+        self._paused = None
 
     def resume(self, now: float, past: PastGame, activity: Activity) -> None:
         """Resume a game at a time in s; restore its clock, its waits, and the times of visits."""
@@ -117,6 +129,7 @@ class StaffWatch:
                 for person in people
             ),
             0.0 if planned is None else planned.pace,
+            None if self._paused is None or self._ended is not None else now - self._paused,
         )
 
     def _person(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.text.calls import waits_line
@@ -18,6 +19,8 @@ from tangy_tui.text.staff_lines import (
     SAY_IN_WORDS,
     nothing_to,
 )
+from tangy_tui.text.staff_view import time_words
+from tangy_tui.text.times import local_now
 
 HELP = "You can type at any time:"
 
@@ -78,7 +81,12 @@ class Inquiries:
         world = self._game.world
         state = world.observe()
         seen = state_words(world.activity, state, world.scene(), self._name)
-        now = world.activity.in_words(state.situation)
+        doing = world.activity.in_words(state.situation)
         robot = self._controller.robot
         going = going_words(robot.going, self._name, robot.lets)
-        return " ".join(filter(None, (f"Now: {now}.", going, f"{seen} ({self._controller.phase})")))
+        view, plan = self._controller.view(), self._game.game.changes.plan
+        simulated = self._game.world.played_in == SIMULATED
+        now = None if simulated else local_now()
+        time = f"{time_words(view.seconds, plan.minutes, view.paused, now)}."
+        told = f"Now: {doing}.", going, f"{seen} ({self._controller.phase})", time
+        return " ".join(filter(None, told))

@@ -67,6 +67,8 @@ def _games(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
         "other_faults": game.other,
         "pauses": game.pauses[0],
         "paused_seconds": game.pauses[1],
+        "staff_pauses": replay.staff_pauses[0],
+        "staff_paused_seconds": replay.staff_pauses[1],
     }
 
 
@@ -186,7 +188,7 @@ TABLES = (
         "games",
         (*HEAD, "number", "begun", "ended", "activity", "policy", "digest", "people", "steps",
          "seconds", "stopped", "due", "rounds_left", "critical_faults", "other_faults",
-         "pauses", "paused_seconds"),
+         "pauses", "paused_seconds", "staff_pauses", "staff_paused_seconds"),
         _games,
     ),
     DataTable(

@@ -31,6 +31,7 @@ from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
 from tangy_tui.monitoring.games import Game
+from tangy_tui.monitoring.pauses import Pauses
 
 IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
@@ -184,6 +185,8 @@ class GameReplay:
     timed: bool = True
     unasked: set[tuple[int, str]] = field(default_factory=set)
     """Step and person of visits without a request."""
+    staff_pauses: tuple[int, float] = (0, 0.0)
+    """How often staff paused the game or stopped the robot, and for how many s in all."""
 
     @property
     def requests(self) -> dict[int, frozenset[str]]:
@@ -269,6 +272,7 @@ def _replay(
     step, acted = 0, 0.0
     done = Counter[str]()  # how often each behaviour was completed so far
     new = {change.person for change in _changes(events) if change.what == "joined"}
+    pauses = Pauses()
     lets_in = False  # staff let a person in, for whom the game is resumed at once
     for event in events:
         what: What
@@ -278,6 +282,7 @@ def _replay(
                 replay.timed &= took is not None
                 replay.seconds = max(replay.seconds, (over or 0.0) - (took or 0.0))
                 begun = replay.seconds
+                pauses.step(begun)
                 replay.seconds += took or 0.0
                 times = done[record.behaviour]
                 done[record.behaviour] += record.completed
@@ -294,11 +299,13 @@ def _replay(
                 continue
             case GameResumed(by=by):
                 what = Noted("resumed", by)
+                pauses.resumed(max(acted, replay.seconds))
             case StaffAction() as action:
                 lets_in = action.did == "came" and action.person in new
                 new -= {action.person} if lets_in else set()
                 # while a step was carried out that comes later
                 acted = max(acted, action.seconds or 0.0)
+                pauses.did(action.did, max(acted, replay.seconds))
                 what = Noted(action.did, action.by, action.person, action.detail, action.taken_back)
             case CallMade() as what:
                 pass
@@ -315,6 +322,8 @@ def _replay(
             case _:  # an ending; a repeated fault; or a move of an unknown fault
                 continue
         replay.moments.append(Moment(max(acted, replay.seconds), step, event.at, what))
+    replay.seconds = max(acted, replay.seconds)
+    replay.staff_pauses = pauses.total(replay.seconds)
     return replay
 
 

@@ -194,6 +194,12 @@ class Session:
         return sum(replay.seconds for replay in self.replays)
 
     @property
+    def staff_pauses(self) -> tuple[int, float]:
+        """How often staff paused the games, and for how many s in all."""
+        each = [replay.staff_pauses for replay in self.replays]
+        return sum(count for count, _ in each), sum(seconds for _, seconds in each)
+
+    @property
     def timed(self) -> bool:
         """Whether the log has all durations."""
         return all(replay.timed for replay in self.replays)
@@ -203,8 +209,13 @@ class Session:
         return {
             "title": self.title,
             "seconds": self.seconds if self.timed else None,
+            "staff_pauses": _pauses(self.staff_pauses),
             "games": [
-                {**r.game.to_json(), "seconds": r.seconds if r.timed else None}
+                {
+                    **r.game.to_json(),
+                    "seconds": r.seconds if r.timed else None,
+                    "staff_pauses": _pauses(r.staff_pauses),
+                }
                 for r in self.replays
             ],
             "rows": [
@@ -379,6 +390,10 @@ def _beliefs(
             complied = bool(entry.complied)
             counts[person, entry.strategy] = (yes + complied, no + (not complied))
     return counted(known.prior, person, counts)
+
+
+def _pauses(pauses: tuple[int, float]) -> dict[str, Any]:
+    return {"count": pauses[0], "seconds": pauses[1]}
 
 
 def _belief(belief: Beta) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from tangy_tui.text import session_page as say
 from tangy_tui.text.activities import stage_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.report import WORLD_WORDS, care_lines, quiet_words
+from tangy_tui.text.report import WORLD_WORDS, care_lines, paused_words, quiet_words
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
@@ -166,7 +166,8 @@ def _until(session: Session) -> str:
 def _how_long(session: Session) -> str:
     if not session.timed:
         return "not known: an older Tangy kept no times within a game"
-    return f"{length(session.seconds)} of playing, in the time of the room"
+    paused = paused_words(*session.staff_pauses)
+    return f"{length(session.seconds)} in the time of the room{paused}"
 
 
 def _endings(session: Session) -> str:

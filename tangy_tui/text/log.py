@@ -22,6 +22,7 @@ from tangy_tui.text.report import (
     call_lines,
     care_lines,
     changes_lines,
+    paused_words,
     quiet_words,
     staff_action_lines,
 )
@@ -135,7 +136,8 @@ def session_lines(session: Session) -> Iterator[str]:
     """Summarise a session: games, faults, people, and what needs attention."""
     yield from _games_lines(session.games, session.activity)
     if session.timed:
-        yield f"Time in the room: {length(session.seconds)}."
+        paused = paused_words(*session.staff_pauses)
+        yield f"Time in the room: {length(session.seconds)}{paused}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield from changes_lines(session.replays, session.name)
     found = attention(session.replays).values()

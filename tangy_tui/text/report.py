@@ -56,6 +56,13 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
+def paused_words(count: int, seconds: float) -> str:
+    """Tell how often and how long staff paused, after the time in the room; "" if they did not."""
+    if seconds < 1:
+        return ""
+    return f", of which {length(seconds)} in {counted(count, 'pause')}"
+
+
 def asked_words(one: Attention) -> str:
     """Tell how often a person asked for help."""
     return counted(one.requests, "time") if one.requests else "no"

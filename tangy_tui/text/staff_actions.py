@@ -25,6 +25,10 @@ def action_words(noted: Noted, name: Name) -> str:
     match noted.did:
         case "resumed":
             return "the game went on after an interruption"
+        case "paused":
+            return "the game was paused"
+        case "went on":
+            return "the game went on after a pause"
         case "stopped":
             return "the robot was stopped"
         case "let go on":

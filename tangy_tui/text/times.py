@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from datetime import UTC, datetime
 
 from tangy_tui.text.numbers import counted
+
+
+def local_now() -> datetime:
+    """Return the local time of day."""
+    return datetime.now(UTC).astimezone()
 
 
 def clock(seconds: float) -> str:

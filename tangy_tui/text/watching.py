@@ -7,7 +7,8 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_view import lasting_words, time_words
+from tangy_tui.text.staff_view import Fact, lasting_words, time_facts, time_words
+from tangy_tui.text.times import local_now
 
 WORLDS: dict[GameWorld, str] = {
     UNKNOWN: "world unknown",
@@ -100,11 +101,15 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
     """Describe the time, who waits for help, and the calls."""
     waits, called = waiting_words(view, name), called_words(view, activity)
-    now = f"{time_words(view.seconds, view.minutes)}{f'. {waits}' if waits else ''}."
+    now = f"{time_words(view.seconds, view.minutes, view.paused)}{f'. {waits}' if waits else ''}."
     return [now, called] if called else [now]
 
 
-def facts(view: GameView) -> list[str]:
+def facts(view: GameView) -> list[Fact]:
     """Return the facts beside the call."""
     called = len(view.scene.called)
-    return [time_words(view.seconds, view.minutes), f"{called} called" if called else ""]
+    now = local_now() if view.world in (BENCH, LIVE) else None
+    return [
+        time_facts(view.seconds, view.minutes, view.paused, now),
+        f"{called} called" if called else "",
+    ]

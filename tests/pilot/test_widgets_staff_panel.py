@@ -42,3 +42,13 @@ async def test_a_few_people_need_no_count(run: Run) -> None:
         panel.show("B7", "Next: call number.", ["1:01 so far"], [("Rosa", "asks 10 s", "warn")])
         await pilot.pause()
         assert "Rosa" in pilot.text() and not panel.border_subtitle
+
+
+async def test_a_fact_is_told_in_the_longest_words_for_which_there_is_room(run: Run) -> None:
+    ways = ("1:01 so far, paused 0:40, 12:00 left, until 15:20", "1:01 so far, paused 0:40")
+    for width, told in ((80, ways[0]), (62, ways[1])):
+        async with run(Panel(), size=(width, 24)) as pilot:
+            panel = pilot.app.screen.query_one(StaffPanel)
+            panel.show("B7", "Next: call number.", [ways], [("Rosa", "asks 10 s", "warn")])
+            await pilot.pause()
+            assert told in pilot.text() and (told == ways[0] or ways[0] not in pilot.text())

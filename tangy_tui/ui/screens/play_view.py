@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.set_up import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
+from tangy_tui.text.times import local_now
 from tangy_tui.ui.widgets.call_board import CallBoard, column_row
 from tangy_tui.ui.widgets.staff_panel import BOARD, PersonLine, StaffPanel
 from tangy_tui.world import World
@@ -66,13 +68,15 @@ def _next(shown: ViewSource) -> str:
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
 
-def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
+def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[text.Fact]:
     """Return the facts beside the call, with the last few calls if wanted."""
     world, label = shown.world, shown.world.activity.deck.label
+    now = None if world.played_in == SIMULATED else local_now()  # simulated time runs otherwise
+    time = text.time_facts(view.seconds, shown.minutes, view.paused, now)
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
     if not world.activity.deck.columns:  # the activity has no calls
         return [
-            text.time_words(view.seconds, shown.minutes),
+            time,
             text.tangy_words(shown.control.autonomy.level, battery_of(world)),
         ]
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
@@ -80,7 +84,7 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[str]:
     patterns = getattr(planned, "patterns", None)
     return [
         f"{count}   {before}".rstrip(),
-        text.time_words(view.seconds, shown.minutes),
+        time,
         text.pace_words(view),
         text.played_words(patterns),
         text.tangy_words(shown.control.autonomy.level, battery_of(world)),

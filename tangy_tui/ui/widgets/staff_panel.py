@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rich.cells import cell_len
 from textual import events
 
-from tangy_tui.text.staff_view import more_words
+from tangy_tui.text.staff_view import Fact, more_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.rows import Row, RowView, fit, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
@@ -78,7 +78,7 @@ class StaffPanel(RowView, can_focus=True):
         super().__init__(id="staff")
         self.border_title = "Now"
         self._call, self._next = "", ""
-        self._facts: tuple[str, ...] = ()
+        self._facts: tuple[Fact, ...] = ()
         self._people: tuple[PersonLine, ...] = ()
         self._board: tuple[Row, ...] = ()
         self._across = 1  # people in a line
@@ -87,7 +87,7 @@ class StaffPanel(RowView, can_focus=True):
         self,
         call: str,
         next_step: str,
-        facts: Sequence[str],
+        facts: Sequence[Fact],
         people: Sequence[PersonLine],
         board: Sequence[Row] = (),
     ) -> None:
@@ -130,9 +130,10 @@ class StaffPanel(RowView, can_focus=True):
         large = width >= LARGE_WIDTH and height >= LARGE_HEIGHT
         drawn = block_rows(self._call, large) if self._call else [""] * min(5, len(self._facts))
         beside = max((cell_len(row) for row in drawn), default=0)
-        facts = [clean(fact) for fact in self._facts if fact]
         if self._board and height >= BOARD_HEIGHT and width - beside > BOARD:
-            return self._with_board(drawn, beside, facts, width)
+            return self._with_board(drawn, beside, width)
+        side = width if width - beside < BESIDE else width - beside - 1
+        facts = _fitting(self._facts, side)
         if width - beside < BESIDE:
             below: list[Row] = [((row, "robot"),) for row in drawn]
             return below + [((fact, "text"),) for fact in facts]
@@ -145,15 +146,17 @@ class StaffPanel(RowView, can_focus=True):
             rows.append(((fit(block, beside + 1), "robot"), (shorten(fact, room), "text")))
         return rows
 
-    def _with_board(
-        self, drawn: Sequence[str], beside: int, facts: Sequence[str], width: int
-    ) -> list[Row]:
+    def _with_board(self, drawn: Sequence[str], beside: int, width: int) -> list[Row]:
         """Draw the board beside the call, and the facts below both."""
         rows: list[Row] = []
         for number, row in enumerate(self._board):
             block = drawn[number] if number < len(drawn) else ""
             rows.append(((fit(block, beside + 1), "robot"), *row))
-        lines = wrap(", ".join(fact.replace(" ", HARD) for fact in facts), width)
+        for room in (width, 0):  # the longest words, and the shortest if those do not fit
+            facts = _fitting(self._facts, room)
+            lines = wrap(", ".join(fact.replace(" ", HARD) for fact in facts), width)
+            if len(lines) <= 2:
+                break
         return rows + [((line.replace(HARD, " "), "text"),) for line in lines[:2]]
 
     def _everybody(self, width: int, height: int) -> list[Row]:
@@ -181,3 +184,12 @@ class StaffPanel(RowView, can_focus=True):
             (fit(clean(name), columns) + " ", "strong" if ink == "warn" else "text"),
             (fit(clean(how), width - columns - 2) + " ", ink),
         )
+
+
+def _fitting(facts: Sequence[Fact], width: int) -> list[str]:
+    """Return each fact in its longest words of at most `width` cells, or in its shortest."""
+    chosen = []
+    for fact in filter(None, facts):
+        ways = [clean(way) for way in ((fact,) if isinstance(fact, str) else fact)]
+        chosen.append(next((way for way in ways if cell_len(way) <= width), ways[-1]))
+    return chosen

@@ -1,0 +1,78 @@
+"""The ways in which staff pause a game, stop the robot, and let both go on.
+
+Each pause is logged, and its time counts as part of the game: the planned length is the time that
+the home has, and lunch does not wait.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from tangy_tui.app.ending_games import EndingGames
+from tangy_tui.app.fault_commands import Result
+from tangy_tui.app.game_commands import StaffNote
+from tangy_tui.app.staff_view import StaffWatch
+
+
+class PausingGames(EndingGames):
+    """The part of the controller that pauses games."""
+
+    going: bool
+    """Whether the next behaviour may run; False: the game is paused."""
+    single: bool
+    """Whether the game pauses after the next behaviour."""
+    paused_itself: bool
+    """Whether the program paused the game, and not staff."""
+    _watch: StaffWatch
+
+    def _tell_all(self) -> None:
+        raise NotImplementedError
+
+    def _pause(self, *, unasked: bool) -> list[Result]:
+        before, self.going, self.paused_itself = self.going, False, unasked
+        self._stands(did=before and not unasked)
+        return [StaffNote("paused")]
+
+    def _stands(self, *, did: bool) -> None:
+        """Begin a pause, unless there is one; `did`: log that staff paused the game."""
+        if self._watch.pause(self.supervision.world.seconds) and did:
+            self.note("paused")
+
+    @contextmanager
+    def driving(self) -> Iterator[None]:
+        """Let staff drive by keys while the game waits."""
+        going, self.going, self.robot.driving = self.going, False, True
+        try:
+            yield
+        finally:
+            self.robot.driving = False
+            self.going = going and not self.stopped
+            self.note("drove")
+            self._tell_all()
+
+    def _stop(self, by: str) -> list[Result]:
+        stopped = super()._stop(by)
+        self._stands(did=False)
+        return stopped
+
+    def _go_on(self) -> list[Result]:
+        if self.stopped:
+            if self.supervision.halted is None:
+                self.robot.release()
+            self.stopped = False
+            self.note("let go on")
+        elif not self.going:
+            self.note("went on")
+        self._watch.go_on()
+        if self.supervision.over and self.robot.frozen:
+            self.robot.release(everybody=True)
+        self.going, self.paused_itself = True, False
+        return [StaffNote("goes on")]
+
+    def _one_step(self) -> list[Result]:
+        if refused := self.refusal():
+            return [refused]
+        self._stands(did=True)
+        self.single = self.going = True
+        return [StaffNote("one step")]

@@ -1,0 +1,121 @@
+"""Pauses of a game: its clock goes on, and screen, log and report tell the same times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.past_game import PastGame, interrupted_game
+from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StopRobot
+from tangy_tui.app.game_view import view_of
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.pauses import Pauses
+from tangy_tui.monitoring.replay import GameReplay
+from tangy_tui.monitoring.session import read_session
+from tangy_tui.text.staff_view import time_words
+from tests.app.test_interruption import Robot
+
+
+@pytest.fixture
+def workspace(taught: Path) -> Iterator[Workspace]:
+    workspace = Workspace(taught)
+    yield workspace
+    workspace.close()
+
+
+def reported(workspace: Workspace) -> GameReplay:
+    (game,) = read_session(workspace.store, read_games(workspace.store), {}, {}).replays
+    return game
+
+
+def interrupted(workspace: Workspace) -> PastGame:
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    return past
+
+
+def test_screen_log_and_report_tell_the_same_times_of_a_paused_game(workspace: Workspace) -> None:
+    before = Robot(workspace)
+    before.next(3)
+    before.control.apply(Pause())
+    before.link.time += 200.0
+    assert before.control.view().paused == pytest.approx(200.0)
+    before.control.apply(GoOn())
+    played = before.control.view().seconds
+    assert before.control.view().paused is None and played > 200
+    game = reported(workspace)
+    assert game.staff_pauses == (1, pytest.approx(200.0))
+    assert game.seconds == pytest.approx(played)
+    assert interrupted(workspace).seconds == pytest.approx(played)
+
+
+def test_the_time_between_a_crash_and_the_resume_is_in_no_clock(workspace: Workspace) -> None:
+    before = Robot(workspace)
+    before.next(3)
+    before.control.apply(Pause())
+    before.link.time += 200.0
+    before.control.apply(GoOn())
+    before.next(1)
+    played = interrupted(workspace).seconds
+    before.link.time += 40.0  # in which nothing was logged
+
+    after = Robot(workspace, interrupted(workspace), on_for=7200.0)
+    shown = after.control.view()
+    assert (shown.seconds, shown.paused) == (pytest.approx(played), 0.0)
+    after.link.time += 50.0
+    assert after.control.view().paused == pytest.approx(50.0)
+    after.control.apply(GoOn())
+    after.next(1)
+    ended = after.control.view().seconds
+    assert ended == pytest.approx(after.control.supervision.game.log.seconds)
+    assert interrupted(workspace).seconds == pytest.approx(ended)
+    game = reported(workspace)
+    assert game.seconds == pytest.approx(ended)
+    assert game.staff_pauses == (2, pytest.approx(250.0))
+
+
+def test_a_stop_and_single_steps_count_as_pauses(workspace: Workspace) -> None:
+    robot = Robot(workspace)
+    robot.next(3)
+    robot.control.apply(StopRobot())
+    robot.link.time += 30.0
+    robot.control.apply(GoOn())
+    assert reported(workspace).staff_pauses == (1, pytest.approx(30.0))
+    robot.control.apply(OneStep())
+    robot.link.time += 20.0
+    robot.control.apply(Pause())
+    robot.link.time += 5.0
+    assert robot.control.view().paused == pytest.approx(25.0)
+    robot.control.apply(GoOn())
+    assert reported(workspace).staff_pauses == (2, pytest.approx(55.0))
+
+
+def test_a_pause_that_the_log_does_not_end_lasts_until_the_next_step_after_a_resume() -> None:
+    pauses = Pauses()  # as an older version logged it
+    pauses.resumed(10.0)
+    pauses.step(14.0)
+    assert pauses.total(300.0) == (1, 4.0)
+
+
+def test_a_pause_lasts_until_the_end_of_the_game() -> None:
+    pauses = Pauses()
+    pauses.did("paused", 10.0)
+    pauses.did("stopped", 20.0)
+    assert pauses.total(40.0) == (1, 30.0)
+
+
+def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> None:
+    robot = Robot(workspace)
+    robot.next(1)
+    view = view_of(robot.control)
+    assert view is not None and view.paused is None
+    robot.control.apply(Pause())
+    robot.link.time += 200.5
+    view = view_of(robot.control)
+    assert view is not None and view.paused == 200
+    (line,) = Inquiries(robot.control, workspace.name, None).lines("where") or []
+    assert time_words(view.seconds, 0, 200) in line
