@@ -448,10 +448,10 @@ async def test_a_call_is_repeated_and_taken_back(
         await until_shown(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("y")
         events = workspace.store.events
-        await until_shown(pilot, lambda: len(list(events(StaffAction))) > 1)
+        await until_shown(pilot, lambda: len(list(events(StaffAction))) > 2)
         assert len(world.called) == count - 1
         noted = [(event.record.did, event.record.detail) for event in events(StaffAction)]
-        assert noted == [("called again", label), ("took back", label)]
+        assert noted == [("paused", ""), ("called again", label), ("took back", label)]
 
 
 @pytest.mark.slow
