@@ -84,9 +84,12 @@ class Inquiries:
         doing = world.activity.in_words(state.situation)
         robot = self._controller.robot
         going = going_words(robot.going, self._name, robot.lets)
-        view, plan = self._controller.view(), self._game.game.changes.plan
-        simulated = self._game.world.played_in == SIMULATED
-        now = None if simulated else local_now()
-        time = f"{time_words(view.seconds, plan.minutes, view.paused, now)}."
-        told = f"Now: {doing}.", going, f"{seen} ({self._controller.phase})", time
+        told = f"Now: {doing}.", going, f"{seen} ({self._controller.phase})", self._time()
         return " ".join(filter(None, told))
+
+    def _time(self) -> str:
+        """Tell the time of a game in which it is the time of the home, not simulated."""
+        if self._game.world.played_in == SIMULATED:
+            return ""
+        view, plan = self._controller.view(), self._game.game.changes.plan
+        return f"{time_words(view.seconds, plan.minutes, view.paused, local_now())}."

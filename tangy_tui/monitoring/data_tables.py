@@ -67,8 +67,8 @@ def _games(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
         "other_faults": game.other,
         "pauses": game.pauses[0],
         "paused_seconds": game.pauses[1],
-        "staff_pauses": replay.staff_pauses[0],
-        "staff_paused_seconds": replay.staff_pauses[1],
+        "staff_pauses": replay.staff_pauses.count,
+        "staff_paused_seconds": replay.staff_pauses.seconds,
     }
 
 

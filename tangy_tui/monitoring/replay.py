@@ -31,7 +31,7 @@ from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
 from tangy_tui.monitoring.games import Game
-from tangy_tui.monitoring.pauses import Pauses
+from tangy_tui.monitoring.pauses import PauseClock, PauseTotal
 
 IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
@@ -185,8 +185,8 @@ class GameReplay:
     timed: bool = True
     unasked: set[tuple[int, str]] = field(default_factory=set)
     """Step and person of visits without a request."""
-    staff_pauses: tuple[int, float] = (0, 0.0)
-    """How often staff paused the game or stopped the robot, and for how many s in all."""
+    staff_pauses: PauseTotal = field(default_factory=PauseTotal)
+    """When staff paused the game or stopped the robot."""
 
     @property
     def requests(self) -> dict[int, frozenset[str]]:
@@ -272,7 +272,7 @@ def _replay(
     step, acted = 0, 0.0
     done = Counter[str]()  # how often each behaviour was completed so far
     new = {change.person for change in _changes(events) if change.what == "joined"}
-    pauses = Pauses()
+    pauses = PauseClock()
     lets_in = False  # staff let a person in, for whom the game is resumed at once
     for event in events:
         what: What

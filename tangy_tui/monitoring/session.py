@@ -21,6 +21,7 @@ from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import BORNE, OPEN, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
+from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.player_facts import PlayerFacts, player_facts
 from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
 
@@ -191,13 +192,12 @@ class Session:
     @property
     def seconds(self) -> float:
         """The duration of all games, in the world's own time (s)."""
-        return sum(replay.seconds for replay in self.replays)
+        return sum(one.seconds for one in self.replays)
 
     @property
-    def staff_pauses(self) -> tuple[int, float]:
-        """How often staff paused the games, and for how many s in all."""
-        each = [replay.staff_pauses for replay in self.replays]
-        return sum(count for count, _ in each), sum(seconds for _, seconds in each)
+    def staff_pauses(self) -> PauseTotal:
+        """When staff paused the games, in all."""
+        return PauseTotal.of(replay.staff_pauses for replay in self.replays)
 
     @property
     def timed(self) -> bool:
@@ -209,12 +209,12 @@ class Session:
         return {
             "title": self.title,
             "seconds": self.seconds if self.timed else None,
-            "staff_pauses": _pauses(self.staff_pauses),
+            "staff_pauses": self.staff_pauses.to_json(),
             "games": [
                 {
                     **r.game.to_json(),
                     "seconds": r.seconds if r.timed else None,
-                    "staff_pauses": _pauses(r.staff_pauses),
+                    "staff_pauses": r.staff_pauses.to_json(),
                 }
                 for r in self.replays
             ],
@@ -230,8 +230,8 @@ class Session:
                 for row in self.rows
             ],
             "faults": fault_rows(self.faults),
-            "fault_list": [fault.document() for fault in self.faults],
-            "questions": [fault.document() for fault in self.questions],
+            "fault_list": [one.document() for one in self.faults],
+            "questions": [one.document() for one in self.questions],
             "people": [
                 {
                     "id": person.id,
@@ -292,10 +292,9 @@ def read_session(
 def _rows(replays: Sequence[GameReplay], activity: Activity | None) -> tuple[TallyRow, ...]:
     done: Counter[tuple[Situation, str]] = Counter()
     right: Counter[tuple[Situation, str]] = Counter()
-    for replay in replays:
-        for step in replay.done:
-            done[step.state.situation, step.behaviour] += 1
-            right[step.state.situation, step.behaviour] += step.right
+    for step in (step for replay in replays for step in replay.done):
+        done[step.state.situation, step.behaviour] += 1
+        right[step.state.situation, step.behaviour] += step.right
     order = (
         activity.situations if activity is not None else tuple(dict.fromkeys(s for s, _ in done))
     )
@@ -390,10 +389,6 @@ def _beliefs(
             complied = bool(entry.complied)
             counts[person, entry.strategy] = (yes + complied, no + (not complied))
     return counted(known.prior, person, counts)
-
-
-def _pauses(pauses: tuple[int, float]) -> dict[str, Any]:
-    return {"count": pauses[0], "seconds": pauses[1]}
 
 
 def _belief(belief: Beta) -> dict[str, Any]:

@@ -166,7 +166,7 @@ def _until(session: Session) -> str:
 def _how_long(session: Session) -> str:
     if not session.timed:
         return "not known: an older Tangy kept no times within a game"
-    paused = paused_words(*session.staff_pauses)
+    paused = paused_words(session.staff_pauses)
     return f"{length(session.seconds)} in the time of the room{paused}"
 
 

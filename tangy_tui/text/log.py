@@ -136,7 +136,7 @@ def session_lines(session: Session) -> Iterator[str]:
     """Summarise a session: games, faults, people, and what needs attention."""
     yield from _games_lines(session.games, session.activity)
     if session.timed:
-        paused = paused_words(*session.staff_pauses)
+        paused = paused_words(session.staff_pauses)
         yield f"Time in the room: {length(session.seconds)}{paused}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield from changes_lines(session.replays, session.name)

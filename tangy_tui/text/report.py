@@ -12,6 +12,7 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.card_news import BY as TANGY
 from tangy_tui.monitoring.attention import Attention, Call, calls_in
 from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
@@ -56,11 +57,11 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
-def paused_words(count: int, seconds: float) -> str:
+def paused_words(pauses: PauseTotal) -> str:
     """Tell how often and how long staff paused, after the time in the room; "" if they did not."""
-    if seconds < 1:
+    if pauses.seconds < 1:
         return ""
-    return f", of which {length(seconds)} in {counted(count, 'pause')}"
+    return f", of which {length(pauses.seconds)} in {counted(pauses.count, 'pause')}"
 
 
 def asked_words(one: Attention) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import astuple
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from tangy_tui.app.game_view import view_of
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.monitoring.games import read_games
-from tangy_tui.monitoring.pauses import Pauses
+from tangy_tui.monitoring.pauses import PauseClock, PauseTotal
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.text.staff_view import time_words
@@ -48,7 +49,7 @@ def test_screen_log_and_report_tell_the_same_times_of_a_paused_game(workspace: W
     played = before.control.view().seconds
     assert before.control.view().paused is None and played > 200
     game = reported(workspace)
-    assert game.staff_pauses == pytest.approx((1, 200.0))
+    assert astuple(game.staff_pauses) == pytest.approx((1, 200.0))
     assert game.seconds == pytest.approx(played)
     assert interrupted(workspace).seconds == pytest.approx(played)
 
@@ -75,7 +76,7 @@ def test_the_time_between_a_crash_and_the_resume_is_in_no_clock(workspace: Works
     assert interrupted(workspace).seconds == pytest.approx(ended)
     game = reported(workspace)
     assert game.seconds == pytest.approx(ended)
-    assert game.staff_pauses == pytest.approx((2, 250.0))
+    assert astuple(game.staff_pauses) == pytest.approx((2, 250.0))
 
 
 def test_a_stop_and_single_steps_count_as_pauses(workspace: Workspace) -> None:
@@ -84,28 +85,28 @@ def test_a_stop_and_single_steps_count_as_pauses(workspace: Workspace) -> None:
     robot.control.apply(StopRobot())
     robot.link.time += 30.0
     robot.control.apply(GoOn())
-    assert reported(workspace).staff_pauses == pytest.approx((1, 30.0))
+    assert astuple(reported(workspace).staff_pauses) == pytest.approx((1, 30.0))
     robot.control.apply(OneStep())
     robot.link.time += 20.0
     robot.control.apply(Pause())
     robot.link.time += 5.0
     assert robot.control.view().paused == pytest.approx(25.0)
     robot.control.apply(GoOn())
-    assert reported(workspace).staff_pauses == pytest.approx((2, 55.0))
+    assert astuple(reported(workspace).staff_pauses) == pytest.approx((2, 55.0))
 
 
 def test_a_pause_that_the_log_does_not_end_lasts_until_the_next_step_after_a_resume() -> None:
-    pauses = Pauses()  # as an older version logged it
+    pauses = PauseClock()  # as an older version logged it
     pauses.resumed(10.0)
     pauses.step(14.0)
-    assert pauses.total(300.0) == (1, 4.0)
+    assert pauses.total(300.0) == PauseTotal(1, 4.0)
 
 
 def test_a_pause_lasts_until_the_end_of_the_game() -> None:
-    pauses = Pauses()
+    pauses = PauseClock()
     pauses.did("paused", 10.0)
     pauses.did("stopped", 20.0)
-    assert pauses.total(40.0) == (1, 30.0)
+    assert pauses.total(40.0) == PauseTotal(1, 30.0)
 
 
 def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> None:
