@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tangy_profiles.game_world import BENCH
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, unaccented
 from tangy_profiles.room import SEAT
 from tangy_tui.app.game_commands import Joins, StaffNote
@@ -13,8 +12,6 @@ from tangy_tui.app.register import add_person
 from tangy_tui.app.rooms import check_places
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.past_game import PastGame
@@ -105,7 +102,14 @@ def resume_joined(workspace: Workspace, world: GameWorld) -> PastGame | None:
     return None if past is None else take_up(workspace, past).past
 
 
-def keep_cards(cards: Mapping[str, int], world: LiveWorld) -> None:
-    """Tell a world the cards known before a person joined; the bench deals new ones."""
-    if cards and world.played_in != BENCH:
+def carry_over(before: LiveWorld, world: LiveWorld) -> None:
+    """Tell a world what was known before a person joined.
+
+    A robot knows the cards; the bench deals new ones, but knows which faults are still to come.
+    """
+    from tangy_tui.app.simulated_devices_world import BenchedWorld
+
+    if isinstance(before, BenchedWorld) and isinstance(world, BenchedWorld):
+        world.carry_over(before)
+    elif cards := before.known_cards:
         world.cards.dealt.deal(cards)

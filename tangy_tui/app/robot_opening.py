@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.device_protocols import DeviceError
+from tangy_hw.drivers.chest_pairing import keep_pairing
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 from tangy_hw.robot_client.live_world import FACING, PACE_SECONDS, LiveWorld
@@ -21,6 +23,7 @@ from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
 from tangy_sim.servers.link_relay import LinkQuality
 from tangy_sim.worlds.injection import Injection
+from tangy_tui.app.bench_page import BenchPage
 from tangy_tui.app.declared_bench_world import BenchedDeclaredWorld
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.simulated_devices_world import BenchedWorld
@@ -44,39 +47,60 @@ WorldOpening = Opening[LiveWorld]
 """Opens one of them for games."""
 
 
+@dataclass(frozen=True)
+class RobotOpening:
+    """Opens a robot or its bench for games, as often as wanted; a `WorldOpening`."""
+
+    workspace: Workspace
+    bench: bool
+    lost: bool
+    options: Mapping[str, Any]
+
+    def __call__(
+        self, stepped: bool, cancellation: Cancellation, /
+    ) -> AbstractContextManager[LiveWorld]:
+        """Open it."""
+        from tangy_profiles.fault_file import load_faults
+
+        told: dict[str, Any] = {"book": load_faults(self.workspace.robot), "lost": self.lost}
+        told |= {"cancellation": cancellation, **self.options}
+        if not self.bench:
+            return open_robot(self.workspace, **told)
+        told["kind"] = BenchedDeclaredWorld if _is_declared(self.workspace) else BenchedWorld
+        return open_bench(self.workspace, stepped=stepped, **told)
+
+
+def at_front(opening: WorldOpening) -> WorldOpening:
+    """Return the opening of a robot that was driven to the front, and so is not lost."""
+    return replace(opening, lost=False) if isinstance(opening, RobotOpening) else opening
+
+
 def opening_of(
     workspace: Workspace,
     *,
     bench: bool,
+    lost: bool = False,
     injections: Sequence[Injection] = (),
     link: LinkQuality | None = None,
     own: Mapping[str, Any] | None = None,
     **both: Any,
-) -> WorldOpening:
+) -> RobotOpening:
     """Return a callable that opens the robot or its bench.
 
     Args:
         workspace: the workspace with the robot.
         bench: simulate its devices.
+        lost: do not tell the robot its initial pose.
         injections: the faults to inject on the bench.
         link: the quality of the robot's link to its devices on the bench.
         own: options for a real robot only: its cameras, request sensor, and cards.
         both: options for both; see `open_bench` and `open_robot`.
     """
-    from tangy_profiles.fault_file import load_faults
-
-    if not bench:
-        workspace.robot = driven(workspace.robot, _named(own or {}))
-
-    def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
-        told: dict[str, Any] = {"book": load_faults(workspace.robot), "cancellation": cancellation}
-        if bench:
-            told["kind"] = BenchedDeclaredWorld if _is_declared(workspace) else BenchedWorld
-            told |= {"injections": injections, "link": link}
-            return open_bench(workspace, stepped=stepped, **told, **both)
-        return open_robot(workspace, **told, **(own or {}), **both)
-
-    return opening
+    if bench:
+        benched = {"injections": injections, "link": link, "page": BenchPage()}
+        return RobotOpening(workspace, bench, lost, {**benched, **both})
+    workspace.robot = driven(workspace.robot, _named(own or {}))
+    return RobotOpening(workspace, bench, lost, {**(own or {}), **both})
 
 
 def _named(own: Mapping[str, Any]) -> list[str]:
@@ -98,6 +122,7 @@ def open_bench(
     map_: str = "",
     lost: bool = False,
     link: LinkQuality | None = None,
+    page: BenchPage | None = None,
     cancellation: Cancellation | None = None,
 ) -> Iterator[B]:
     """Open a bench that simulates the robot's devices.
@@ -113,6 +138,7 @@ def open_bench(
         map_: localise by this map file, not by the geometry of the room.
         lost: do not tell the robot its initial pose.
         link: the quality of the robot's link to its devices, unless it is stepped.
+        page: the address of its chest screen; None: any.
         cancellation: cancels the opening.
 
     Raises:
@@ -120,7 +146,7 @@ def open_bench(
         TangyError: the bench or the robot process does not start.
     """
     folder, has = workspace.store.folder, workspace.robot.devices
-    cancellation = cancellation or Cancellation()
+    cancellation, page = cancellation or Cancellation(), page or BenchPage()
     bench = DeviceSimulator(
         seed=seed,
         people=workspace.names,
@@ -134,6 +160,7 @@ def open_bench(
     )
     try:
         at = bench.wires.rosbridge
+        screen: dict[str, str | float | bool] = {"kind": "page", "port": page.free_port()}
         setup = RobotSetup(
             robot=str(workspace.robot.file),
             activity=workspace.profile,
@@ -143,7 +170,7 @@ def open_bench(
                 **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE if name in has},
                 **({"voice": _BENCH_VOICE | {"at": at}} if "voice" in has else {}),
                 "laser": {"kind": "scip", "at": bench.wires.scip},
-                **({"screen": {"kind": "page", "port": 0}} if "screen" in has else {}),
+                **({"screen": screen} if "screen" in has else {}),
             },
             cameras={CAMERA: bench.wires.head} if CAMERA in has else {},
             requests=f"signs:{bench.wires.infrared}" if "requests" in has else "",
@@ -154,11 +181,13 @@ def open_bench(
             seed=seed,
             faces=_drawn_people(bench.wires.faces, cancellation) if CAMERA in has else {},
             log=str(folder / LOG),
+            pairing=page.pairing.to_json(),
         )
         linked = _linked(
             kind, setup, workspace, seed=seed, pace=pace, book=book, cancellation=cancellation
         )
         with linked as world:
+            page.keep(world.link.screen)
             try:
                 world.on(bench, injections, seed)
                 yield world
@@ -201,7 +230,6 @@ def open_robot(
         TangyError: the profile names no drivers, or the robot process does not start.
     """
     check_drivers(workspace.robot)
-    from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.perception.faces.face_store import read_faces
     from tangy_hw.perception.faces.reader import open_reader
     from tangy_hw.perception.requests.source_names import requests_named

@@ -25,6 +25,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.device_simulator.tablet import Tablet
 from tangy_sim.worlds import injection
@@ -78,6 +79,7 @@ class BenchedWorld(LiveWorld):
         self.injection_log = InjectionLog()
         self._chance = Random(f"{seed}/faults").random
         self._to_come = ToCome((), self._chance)
+        self._left: tuple[Injection, ...] | None = None
         self.cards.looked = self._check
         if self.eyes is not None:
             self.eyes.answer = self._told_by_staff
@@ -133,6 +135,17 @@ class BenchedWorld(LiveWorld):
         state = super().begin()
         self.bench.do("rules", away=sorted(self.away), **self._wins)
         return state
+
+    def resume(self, past: PastGame) -> ActivityState:
+        """Resume an interrupted game, and inject the faults that are still to come."""
+        state = super().resume(past)
+        left, self._left = self._left, None
+        self._to_come = ToCome(self.injections if left is None else left, self._chance)
+        return state
+
+    def carry_over(self, before: BenchedWorld) -> None:
+        """Inject only the faults still to come if the game of a world `before` is resumed here."""
+        self._left = before._to_come.left
 
     @property
     def pending_injections(self) -> list[str]:

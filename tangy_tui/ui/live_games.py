@@ -67,6 +67,7 @@ async def play_live(
     from call to call.
     """
     from tangy_tui.app.joining import resume_joined
+    from tangy_tui.app.robot_opening import at_front
     from tangy_tui.app.set_up import SetUp
 
     workspace = program.workspace
@@ -83,8 +84,8 @@ async def play_live(
         before = played
         try:
             played = await _play(
-                program, opening, policy, games=left, seed=seed, teacher=teacher, past=past,
-                setup=setup, before=before,
+                program, at_front(opening), policy, games=left, seed=seed, teacher=teacher,
+                past=past, setup=setup, before=before,
             )  # fmt: skip
         finally:
             workspace.door.detach(before.control)
@@ -118,7 +119,7 @@ async def _play(
             world = await _switch_on(program, robot, again=before is not None)
         if world is None:
             return None
-        from tangy_tui.app.joining import Admission, keep_cards
+        from tangy_tui.app.joining import Admission, carry_over
         from tangy_tui.learning.policies import load_policy
         from tangy_tui.text.calls import REHEARSAL
         from tangy_tui.ui.screens.live import LiveScreen
@@ -139,7 +140,7 @@ async def _play(
             workspace.door.attach(screen.control)
             screen.control.follow(before.control)
             screen.picture.goes_on = before.control.goes_on
-            keep_cards(before.world.known_cards, world)
+            carry_over(before.world, world)
         if program.hearing is not None:
             program.hearing.ears.begin()
         await program.push_screen_wait(screen)

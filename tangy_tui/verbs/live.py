@@ -179,7 +179,7 @@ def live(
         number = workspace.game_seed(seed) if past is None else past.beginning.seed
         from tangy_profiles.known_devices import reads_cards
         from tangy_tui.app.dealing import read_dealt
-        from tangy_tui.app.robot_opening import check_map, opening_of
+        from tangy_tui.app.robot_opening import at_front, check_map, opening_of
         from tangy_tui.text.control import WAIT_EXPLANATIONS
         from tangy_tui.text.missing_devices import missing_words, staff_needed
 
@@ -223,7 +223,7 @@ def live(
                     ),
                 )
             )
-        switched = opening(number)
+        begun = opening(number)
         sees = reads_cards(workspace.robot) or not workspace.activity.deck.columns
         if workspace.robot.drivers and not (bench or plain_lines or sees):
             raise TangyError(staff_needed(workspace.activity.object))
@@ -251,7 +251,7 @@ def live(
                 print(plain(screen_words(world.link.screen, world.link.code)), file=sys.stderr)
 
         stepped = bench and not plain_lines and link is None  # a delay takes real time
-        with switched_on(switched, stepped=stepped, tell=tell) as there:
+        with switched_on(begun, stepped=stepped, tell=tell) as there:
             if not as_json and (plain_lines or not bench):
                 tell_screen(there)
             told_missing = missing_words(workspace.robot, workspace.activity)
@@ -277,7 +277,7 @@ def live(
                 played = LiveGames(workspace, supervision, past)
                 to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
         while console is not None and console.joined:
-            again = switched_on(opening(number), stepped=stepped, tell=tell)
+            again = switched_on(at_front(begun), stepped=stepped, tell=tell)
             with console.keeping(f"tangy live --resume{common.as_given(data)}"), again as there:
                 tell_screen(there)
                 supervision = workspace.supervision(

@@ -9,7 +9,7 @@ from tangy_tui.text.interruptions import kept_words
 from tangy_tui.verbs.common import print_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.past_game import PastGame
@@ -38,7 +38,7 @@ class LiveLines:
         self._left = games
         self._control: GameController | None = None
         self._lines: StaffLines | None = None
-        self._cards: Mapping[str, int] = {}
+        self._world: LiveWorld | None = None
 
     @property
     def joined(self) -> bool:
@@ -80,13 +80,13 @@ class LiveLines:
             world: the robot's world, switched on.
             past: an interrupted game to resume first.
         """
-        from tangy_tui.app.joining import Admission, keep_cards, resume_joined
+        from tangy_tui.app.joining import Admission, carry_over, resume_joined
         from tangy_tui.verbs.playing import staff_lines
 
         before = self._control
-        if before is not None:
+        if before is not None and self._world is not None:
             past = resume_joined(self._workspace, world.played_in)
-            keep_cards(self._cards, world)
+            carry_over(self._world, world)
         control, lines = staff_lines(
             self._workspace,
             supervision,
@@ -99,8 +99,7 @@ class LiveLines:
         if before is not None:
             control.follow(before)
         control.admission = Admission(self._workspace, world)
-        self._control, self._lines = control, lines
+        self._control, self._lines, self._world = control, lines, world
         fine = lines.run(self._left)
         self._left -= lines.played
-        self._cards = world.known_cards
         return fine

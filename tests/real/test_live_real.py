@@ -224,6 +224,8 @@ def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
         did = [(e.body["did"], e.body["by"]) for e in store.events("staff action")]
         assert len({e.body["game"] for e in store.events("staff action")}) == 1
     assert ("came", "Nina") in did and ("ended", "Nina") in did
+    page, again = re.findall(r"open (http:\S+) on the tablet; the code there is (\S+)", done.stderr)
+    assert page == again  # a tablet that shows it connects again
 
 
 def test_staff_control_a_live_game_by_lines_and_the_log_names_them(folder: Path) -> None:

@@ -17,6 +17,11 @@ class ToCome:
         self._chance = chance
 
     @property
+    def left(self) -> tuple[Injection, ...]:
+        """Injections that have not occurred, with all random ones."""
+        return tuple(self._left)
+
+    @property
     def words(self) -> list[str]:
         """Injections that have not occurred, except random ones."""
         return [str(one) for one in self._left if one.chance is None]
