@@ -120,6 +120,11 @@ class PlannedGame:
         """Return the person who has a card; "" if unknown."""
         raise NotImplementedError
 
+    @property
+    def known_cards(self) -> dict[str, int]:
+        """The people whose cards are known, with the numbers of these."""
+        raise NotImplementedError
+
     def wins(self, card: int) -> bool | None:
         """Return whether a card wins by the called numbers; None if there is no such card."""
         numbers = self.numbers_on(card)

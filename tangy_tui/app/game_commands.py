@@ -280,7 +280,7 @@ WITHOUT_GAME = (
 )
 """Commands that also work when no game is running."""
 
-NoteKind = Literal[
+DoneKind = Literal[
     "paused",
     "goes on",
     "one step",
@@ -298,10 +298,6 @@ NoteKind = Literal[
     "one winner",
     "visits",
     "no visits",
-    "here before",
-    "away before",
-    "last one",
-    "not playing",
     "comes",
     "joins",
     "goes",
@@ -310,9 +306,16 @@ NoteKind = Literal[
     "voided",
     "driven",
     "ended",
-    "seen before",
     "reached",
-    # refusals, and why
+]
+"""What became of a command that was carried out."""
+
+RefusalKind = Literal[
+    "here before",
+    "away before",
+    "last one",
+    "not playing",
+    "seen before",
     "stopped first",
     "asks first",
     "halted first",
@@ -342,6 +345,10 @@ NoteKind = Literal[
     "not acceptable",
     "cannot",
 ]
+"""Why a command was refused."""
+REFUSALS: frozenset[RefusalKind] = frozenset(get_args(RefusalKind))
+
+NoteKind = Literal[DoneKind, RefusalKind]
 """The reply to a command."""
 
 

@@ -46,7 +46,6 @@ from tangy_tui.app.game_commands import (
     SetAutonomy,
     StaffNote,
     StopRobot,
-    TakeBackCall,
     TakeOver,
     Tell,
     VoidResponse,
@@ -332,9 +331,9 @@ class GameController(PausingGames):
 
     def refuses(self, command: GameCommand) -> StaffNote | None:
         """Return why a command is refused at once, before its turn; None if it is not."""
-        if isinstance(command, TakeBackCall):
-            return self.plan.nothing_called(command.label)
-        return self.refusal(asking=False) if isinstance(command, CallAgain | Drive) else None
+        if isinstance(command, CallAgain | Drive):
+            return self.refusal(asking=False)
+        return self.plan.refuses(command)
 
     def refusal(self, *, asking: bool = True) -> StaffNote | None:
         """Return what staff have to do first, None if nothing."""

@@ -15,6 +15,7 @@ from tangy_tui.app.game_commands import (
     ChoosePatterns,
     ClaimCard,
     ComesIn,
+    GameCommand,
     GoesAway,
     LetWin,
     PlanCommand,
@@ -87,7 +88,36 @@ class GamePlanControls:
         number = None if world is None or self._idle else _number_called(world, label)
         return "" if world is None or number is None else world.activity.deck.label(number)
 
-    def nothing_called(self, label: str) -> StaffNote | None:
+    def refuses(self, command: GameCommand) -> StaffNote | None:
+        """Return why a command can never work, before its turn; None if it may."""
+        match command:
+            case TakeBackCall(label):
+                return self._nothing_called(label)
+            case ClaimCard(card, person) if not self._idle:
+                return self._no_card(card, person)
+            case ComesIn(person) | GoesAway(person):
+                return self._nobody(person)
+        return None
+
+    def _nobody(self, person: str) -> StaffNote | None:
+        gathering = self._supervision.game.changes.gathering
+        plays = gathering is not None and person in gathering.people
+        return None if plays else StaffNote("not playing", person)
+
+    def _no_card(self, card: int, person: str) -> StaffNote | None:
+        """Return why a claim cannot be checked: there is no such card, or nobody here has it."""
+        if (world := self.world) is None:
+            return StaffNote("no cards")
+        known = world.known_cards
+        cards = ", ".join(map(str, sorted(known.values())))
+        if world.numbers_on(card) is None:
+            return StaffNote("no such card", str(card), cards)
+        everybody = set(world.people) - world.away <= set(known)
+        if everybody and not person and not world.holder(card):
+            return StaffNote("whose card", str(card), cards)
+        return None
+
+    def _nothing_called(self, label: str) -> StaffNote | None:
         """Return why there is no call to take back, None if there is one.
 
         Otherwise it would take back the call that is still being spoken, unasked.
@@ -109,9 +139,9 @@ class GamePlanControls:
 
     def _claim(self, world: PlannedGame, card: int, person: str) -> list[Result]:
         """Check a card against all calls, and tell the group the result."""
+        if (refused := self._no_card(card, person)) is not None:
+            return [refused]
         wins = world.wins(card)
-        if wins is None:
-            return [StaffNote("no such card", str(card))]
         rules, present = world.activity.rules, world.patterns.present
         pattern = present or next(iter(rules.patterns), None)
         words = rules.claim_right if wins else rules.claim_wrong

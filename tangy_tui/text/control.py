@@ -76,33 +76,6 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
     return f"Next: {proposal.behaviour}{whom}, {because}. Y: do it. N: tell Tangy what else."
 
 
-REFUSALS: tuple[NoteKind, ...] = (
-    "no name",
-    "nobody joins",
-    "teams play",
-    "known already",
-    "which person",
-    "most people",
-    "no seat",
-    "not at front",
-    "stopped first",
-    "asks first",
-    "halted first",
-    "no game",
-    "joining",
-    "no robot",
-    "nothing called",
-    "not called",
-    "no cards",
-    "no such card",
-    "nothing to void",
-    "not told",
-    "nothing to tell",
-    "not acceptable",
-    "cannot",
-)
-"""Notes that tell that a command was refused, and why."""
-
 BY_KEYS: dict[NoteKind, str] = {
     "paused": "Paused: {pause} goes on.",
     "stopped": "STOP. Press {pause} to go on.",
@@ -181,9 +154,12 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "no cards":
             return "This activity has no cards and no pace."
         case "no such card":
-            return f"There is no card {about} in this game."
+            return f"There is no card {about} in this game.{_cards(noted)}"
         case "whose card":
-            return f"Tangy does not know whose card {about} is. Claim it again, with their name."
+            return (
+                f"Tangy does not know whose card {about} is. Claim it again, with their name."
+                f"{_cards(noted)}"
+            )
         case "asked for":
             return f"{name(about)} asks for help."
         case "told":
@@ -251,6 +227,10 @@ DRIVE_HELP = (
 def stands_words(why: str) -> str:
     """Tell why the robot does not drive."""
     return f"Tangy stands still: {why}."
+
+
+def _cards(noted: StaffNote) -> str:
+    return f" Cards in play: {noted.words}." if noted.words else ""
 
 
 def _stopper(noted: StaffNote) -> str:

@@ -338,6 +338,11 @@ class SimulatedWorld(PlannedGame):
         """Return the person with a card; "" if there is no such card."""
         return self.people[card - 1] if 1 <= card <= len(self.people) else ""
 
+    @property
+    def known_cards(self) -> dict[str, int]:
+        """Everybody, with the number of their card."""
+        return {person: card for card, person in enumerate(self.people, 1)}
+
     def _play_pattern(self) -> None:
         super()._play_pattern()
         for player in getattr(self, "players", {}).values():

@@ -13,6 +13,7 @@ from tangy_tui.app.confirmations import Confirmation, needed_confirmation
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
+    REFUSALS,
     Accept,
     CallAgain,
     ChangePace,
@@ -38,7 +39,7 @@ from tangy_tui.language.steering import steering_of
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.confirmations import confirmation_words
-from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
+from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
 from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, SOMEBODY_NEW, WHO_IS_HERE, example_words
 from tangy_tui.text.watching import stopped_by_guest

@@ -1,0 +1,64 @@
+"""Commands that can never work are refused at once, and not only when their turn comes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from tangy_profiles.game_rules import GamePlan
+from tangy_tui.app.game_commands import (
+    REFUSALS,
+    ClaimCard,
+    ComesIn,
+    DoneKind,
+    GoesAway,
+    NoteKind,
+    StaffNote,
+)
+from tangy_tui.app.workspace import Workspace
+from tests.app.test_interruption import Robot
+from tests.app.test_planned_games import Planned
+
+
+@pytest.fixture
+def planned(taught: Path) -> Iterator[Planned]:
+    planned = Planned(taught)
+    planned.begin(GamePlan())
+    yield planned
+    planned.workspace.close()
+
+
+def test_a_claim_for_a_card_that_does_not_exist_names_the_cards_in_play(planned: Planned) -> None:
+    assert planned.control.refuses(ClaimCard(999)) == StaffNote("no such card", "999", "1, 2, 3, 4")
+    assert planned.control.refuses(ClaimCard(3)) is None
+
+
+def test_a_person_who_does_not_play_neither_comes_nor_leaves(planned: Planned) -> None:
+    refused = StaffNote("not playing", "user9")
+    assert planned.control.refuses(GoesAway("user9")) == refused
+    assert planned.control.refuses(ComesIn("user9")) == refused
+    assert planned.control.refuses(GoesAway("user1")) is None
+
+
+def test_a_live_claim_for_a_card_of_nobody_is_refused_once_all_cards_are_known(
+    taught: Path,
+) -> None:
+    workspace = Workspace(taught)
+    robot = Robot(workspace)
+    assert robot.control.refuses(ClaimCard(200)) is None  # somebody may have it
+    for card, person in enumerate(robot.world.people, 31):
+        robot.world.cards.dealt.give(person, card)
+    assert robot.control.refuses(ClaimCard(200)) == StaffNote("whose card", "200", "31, 32, 33, 34")
+    assert robot.control.refuses(ClaimCard(200, "user1")) is None  # staff say whose it is
+    assert robot.control.refuses(ClaimCard(31)) is None
+    workspace.close()
+
+
+def test_each_reply_is_either_a_refusal_or_not() -> None:
+    done = set(get_args(DoneKind))
+    assert done | REFUSALS == set(get_args(NoteKind))
+    assert not done & REFUSALS
+    assert {"whose card", "not playing", "nothing asked"} <= REFUSALS
