@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
@@ -10,7 +10,7 @@ import pytest
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.game_commands import SetAutonomy
+from tangy_tui.app.game_commands import SetAutonomy, StopRobot
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.live_games import play_live
@@ -30,11 +30,14 @@ class Robot:
         self._workspace = workspace
         self.broken = False
         """Whether it does not come on."""
+        self.meanwhile: Callable[[], object] = lambda: None
+        """Called while it is switched on."""
 
     @contextmanager
     def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
         if self.broken:
             raise TangyError("The laser scanner does not answer.")
+        self.meanwhile()
         people = tuple(self._workspace.names)
         self.groups.append(people)
         link = HeldLink(people)
@@ -94,3 +97,45 @@ async def test_a_game_is_kept_if_the_robot_does_not_come_on_again(
         await pilot.press(":", *"add Berta", "enter")
         await until_shown(pilot, lambda: "does not answer" in pilot.text())
         assert "The game is kept" in pilot.text()
+
+
+@pytest.mark.slow
+async def test_a_stop_meanwhile_holds(run: Run, workspace: Workspace, policy: Policy) -> None:
+    robot = Robot(workspace)
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        first = live(pilot)
+        robot.meanwhile = lambda: first.control.apply(StopRobot(by="Nina"))
+        await pilot.press(":", *"add Berta", "enter")
+        await until_shown(pilot, lambda: "Nina stopped the robot" in pilot.text())
+        second = live(pilot)
+        assert second is not first and second.control.stopped and second.at_rest
+        assert robot.links[1].held_by and not robot.links[1].done
+        await pilot.press("p")
+        await until_shown(pilot, lambda: "Let the robot move again?" in pilot.text())
+        await pilot.press("y")
+        await until_shown(pilot, lambda: not second.at_rest)
+        assert not second.control.stopped and not robot.links[1].held_by
+
+
+@pytest.mark.slow
+async def test_a_person_who_leaves_is_drawn_as_away_at_once(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    robot = Robot(workspace)
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        assert "○" not in pilot.text()
+        await pilot.press(":", *"User 2 left", "enter")
+        await until_shown(pilot, lambda: "○" in pilot.text())
+        assert not live(pilot).control.going

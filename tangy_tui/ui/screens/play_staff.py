@@ -165,7 +165,10 @@ class PlayStaff(PlayPanels):
                     self._tell_pace(said)
                     continue
                 self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
-        ended = any(isinstance(one, StaffNote) and one.kind == "ended" for one in results)
+        noted = {one.kind for one in results if isinstance(one, StaffNote)}
+        if noted & {"comes", "goes"}:  # the next step may be a while
+            self.picture.show_scene(0, drive=False, pace=0)
+        ended = "ended" in noted
         self._tell([one for one in results if not isinstance(one, StaffNote)], ended)
 
     def _tell_pace(self, said: str) -> None:
