@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity
 from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import GameBeginning
+from tangy_profiles.game_records import GameBeginning, GameChange
 from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, load_people, unaccented
 from tangy_profiles.reading import plain
@@ -85,8 +85,13 @@ class Participants:
         People who were not in it come after the others.
         """
         games = [event.record for event in self.store.events(GameBeginning)]
-        last = next((game.people for game in reversed(games) if game.world in (BENCH, LIVE)), ())
-        before = {person: place for place, person in enumerate(last)}
+        last = next((game for game in reversed(games) if game.world in (BENCH, LIVE)), None)
+        sat = [] if last is None else list(last.people)
+        for change in (event.record for event in self.store.events(GameChange)):
+            joined = last is not None and (change.game, change.what) == (last.game, "joined")
+            if joined and change.person not in sat:
+                sat.insert(len(sat) if change.place is None else change.place, change.person)
+        before = {person: place for place, person in enumerate(sat)}
         there = [person.id for person in self.people]
         return sorted(there, key=lambda person: before.get(person, len(before)))
 

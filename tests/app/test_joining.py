@@ -179,6 +179,19 @@ def test_a_stop_while_the_robot_is_switched_on_again_holds(taught: Path, steps: 
     workspace.close()
 
 
+def test_a_person_who_joined_sits_there_in_the_next_set_up(taught: Path) -> None:
+    workspace = Workspace(taught, users=9)  # at several tables
+    before = LiveGame(workspace)
+    before.play(3)
+    new = before.told(Joins("Berta")).about
+    LiveGame(workspace, resume_joined(workspace, LIVE))
+    sat = [person.id for person in workspace.people]
+    assert 0 < sat.index(new) < len(sat) - 1
+    workspace.gather(sorted(sat))
+    assert workspace.seats_before == sat
+    workspace.close()
+
+
 def test_a_guest_joins_for_today(taught: Path) -> None:
     workspace = Workspace(taught)
     game = LiveGame(workspace)
