@@ -49,6 +49,7 @@ class TypedConfirmation(Generic[CommandT]):
     ) -> None:
         self._asked = command, words
         self._write(words.line(self._yes.ask(typed)))
+        self._yes.asked()
 
     def answer(self, line: str) -> CommandT | None:
         """Return the command that a line confirms; otherwise write what became of it."""

@@ -57,12 +57,11 @@ class Inquiries:
             return [nothing_to(word)]
         return None
 
-    @property
-    def waits_for(self) -> str:
-        """What Tangy waits for, in a sentence; "" if it does not wait."""
+    def waits_for(self, key: str = "Y") -> str:
+        """Tell what Tangy waits for; "" if it does not wait; `key` says yes to a proposal."""
         proposal = self._controller.proposal
         if proposal is not None:
-            return proposal_words(proposal, self._name)
+            return proposal_words(proposal, self._name, key)
         if self._controller.phase == "halted" and (asked := waits_line(self._game, HALTED)):
             return asked
         return ACCEPTABLE if self._game.acceptable else ""

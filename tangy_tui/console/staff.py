@@ -18,7 +18,7 @@ from typing import TypeAlias
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import ANSWERS, command_reader, nearest_command
+from tangy_tui.app.command_grammar import command_reader, nearest_command
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     CallExpert,
@@ -32,6 +32,7 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
+from tangy_tui.console.answering import AnsweredQuestions
 from tangy_tui.console.confirming import ConfirmingStaff
 from tangy_tui.console.inputs import ReadAhead, any_waits
 from tangy_tui.console.inquiries import Inquiries
@@ -52,7 +53,7 @@ from tangy_tui.text.calls import expert_line
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.questions import ANSWER_HELP
-from tangy_tui.text.situations import Name, verification_lines
+from tangy_tui.text.situations import Name
 from tangy_tui.text.telling import waiting_words
 
 Task: TypeAlias = Callable[[], Sequence[ControllerOutput]]
@@ -98,10 +99,11 @@ class StaffLines:
         self._sure = ConfirmingStaff(controller, self._yes, self._write)
         self._waits = ScriptWaits(controller, self._tell_where_it_goes)
         self._inquiries = Inquiries(controller, name, demonstrations)
+        self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, self._write)
         self._ahead: ReadAhead = ReadAhead(read) if before is None else before._ahead
         self._writing = threading.Lock()
         self._write_line = write
-        self._prompted, self._going = "", ("", "", ("", tuple[str, ...]()))
+        self._going = ("", "", ("", tuple[str, ...]()))
         self._stopped: bool = before is not None and before._stopped
         self._ended = self._by_turns = self._leaves = False  # leaves: while no game could begin
         self.played = 0
@@ -154,7 +156,7 @@ class StaffLines:
                 if controller.phase == "running" or (expert if halted else scripted):
                     self._tell(go_on_by_script(controller, expert=expert))
                     continue
-                self._prompt()
+                self._questions.prompt(self._typed)
                 line = None if scripted else self._read()
                 if line is None:
                     self._tell(controller.give_up() or controller.apply(EndGame()))
@@ -193,7 +195,7 @@ class StaffLines:
                 self._tell([*controller.apply(Pause()), StaffNote("cannot", str(error))])
                 continue
             self._tell(events)
-            self._prompt()
+            self._questions.prompt(self._typed)
             busy = self._tasks.unfinished_tasks
             if self._ahead.ended and not busy and controller.phase not in ("running", "idle"):
                 self._write(staff_lines.NOBODY)
@@ -202,14 +204,6 @@ class StaffLines:
             if not game.over and (passed or not events):
                 controller.nudge.wait(passed or LOOK_SECONDS)
 
-    def _prompt(self) -> None:
-        """Write what Tangy waits for, once."""
-        asked = self._inquiries.waits_for
-        if asked != self._prompted:
-            self._prompted = asked
-            if asked:
-                self._write(asked)
-
     def _tell(self, told: Sequence[ControllerOutput]) -> None:
         answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
         events: list[Event] = []
@@ -217,8 +211,7 @@ class StaffLines:
             if isinstance(one, StaffNote):
                 self._write(noted_words(one, self._name))
             elif isinstance(one, Verification):
-                yes = self._yes.ask_of(one, self._typed)
-                self._write_all(verification_lines(one, yes))
+                self._questions.verify(one, self._typed)
                 if isinstance(one, NotUnderstood):
                     self._write(staff_lines.ANSWER_IN_WORDS)
             else:
@@ -369,16 +362,8 @@ class StaffLines:
             pass  # its answer comes in a later line
         elif command is not None:
             self._carry_out(command)
-        elif controller.answers.verifying and (reply := self._yes.answer(text)) is not None:
-            if isinstance(reply, str):
-                self._write(reply)
-                return
-            said = controller.answers.reply(reply)
-            self._tell([said])
-            if isinstance(said, Verified):
-                self._answer(said)
-        elif controller.proposal is not None and answer in ANSWERS:
-            self._carry_out(Confirm(ANSWERS[answer]))
+        elif (reply := self._questions.answer(text)) is not None:
+            self._take_reply(reply)
         elif (told := self._inquiries.lines(answer)) is not None:
             self._write_all(told)
         elif controller.answers.verifying:
@@ -387,6 +372,16 @@ class StaffLines:
             self._tell([controller.answers.say(Say(text))])
         else:
             self._write(plain(staff_lines.not_known(text[:60], nearest_command(text))))
+
+    def _take_reply(self, reply: ControllerOutput | Confirm | str) -> None:
+        if isinstance(reply, str):
+            self._write(reply)
+        elif isinstance(reply, Confirm):
+            self._carry_out(reply)
+        else:
+            self._tell([reply])
+            if isinstance(reply, Verified):
+                self._answer(reply)
 
     def _answer(self, said: Verified) -> None:
         """Carry out an answer, which takes time."""

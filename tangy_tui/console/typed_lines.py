@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 import os
+import re
 import select
 import sys
 import termios
@@ -16,6 +17,7 @@ import unicodedata
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from time import monotonic
 from typing import TextIO
 
 LOOK_SECONDS = 0.5
@@ -24,6 +26,10 @@ READ_BYTES = 4096
 LONGEST = 1000  # characters of a typed line
 END_OF_INPUT, ERASE_LINE, ERASE_WORD, REDRAW, ESCAPE = "\x04", "\x15", "\x17", "\x12", "\x1b"
 BACKSPACES = ("\x7f", "\b")
+ASK_CURSOR, CURSOR = "\x1b[6n", re.compile(r"\x1b\[\d+;\d+R")
+"""The question for the terminal's cursor, and its reply: what came before it is on the screen."""
+REPLY_SECONDS = 1.0
+"""A terminal that has not replied by then never does."""
 
 
 def cells_of(text: str) -> int:
@@ -41,6 +47,8 @@ class LineEditor:
         self.text = ""
         """The text that was typed since the last complete line."""
         self._sequence = ""  # of an escape sequence so far
+        self.replies = 0
+        """The number of the terminal's replies among what was typed."""
 
     def take(self, character: str) -> str | None:
         """Take a character; return the line that it completes, None if it completes none."""
@@ -65,6 +73,7 @@ class LineEditor:
         self._sequence += character
         begins = len(self._sequence) == 1 or self._sequence in ("\x1b[", "\x1bO")
         if not begins and not (self._sequence[1] == "[" and character in "0123456789;<=>?"):
+            self.replies += bool(CURSOR.fullmatch(self._sequence))
             self._sequence = ""
 
 
@@ -90,6 +99,11 @@ class TypedLines:
         self._before = termios.tcgetattr(keys)
         self._mode = threading.Lock()
         self._given_back = False
+        self._unseen, self._unseen_until = 0, 0.0  # questions that may not be on the screen yet
+        self._is_answer: Callable[[str], bool] = lambda line: False
+        self._replies = not dumb  # whether the terminal is known or believed to reply
+        self.too_early: Callable[[], object] = lambda: None
+        """Called after an answer was dropped that was typed before its question was shown."""
 
     def read(self) -> str | None:
         """Return the next line; None at the end of the input."""
@@ -119,11 +133,35 @@ class TypedLines:
             self._echo(self._line.text)
 
     def drop(self, dropped: Callable[[str], bool]) -> None:
-        """Erase the text that is being typed, if it is one to be dropped."""
+        """Erase the text that is being typed, if it is one to be dropped.
+
+        It belongs to a question that is written next: until the terminal has shown that, further
+        such lines are dropped, too. Call `ask_terminal` once the question is written.
+        """
         with self._drawing:
-            if self._line.text and dropped(self._line.text):
-                self._erase()
-                self._line.text = ""
+            self._is_answer = dropped
+            self._drop_begun()
+            if self._replies:
+                self._unseen += 1
+                self._unseen_until = monotonic() + REPLY_SECONDS
+
+    def ask_terminal(self) -> None:
+        """Ask the terminal whether the question that was written is on the screen."""
+        with self._drawing:
+            if self._unseen:
+                self._unseen_until = monotonic() + REPLY_SECONDS
+                self._echo(ASK_CURSOR)
+
+    def _drop_begun(self) -> None:
+        if self._line.text and self._is_answer(self._line.text):
+            self._erase()
+            self._line.text = ""
+
+    def _is_unseen(self) -> bool:
+        """Return whether a question may not be on the screen yet."""
+        if self._unseen and monotonic() > self._unseen_until:
+            self._unseen, self._replies = 0, False
+        return bool(self._unseen)
 
     def prepare(self) -> None:
         """Let the terminal hand over each key without echoing it, as long as it is ours."""
@@ -151,16 +189,25 @@ class TypedLines:
 
     def _take(self, character: str) -> str | None:
         with self._drawing:
-            before, line = self._line.text, self._line.take(character)
+            before, replies, unseen = self._line.text, self._line.replies, self._is_unseen()
+            line = self._line.take(character)
             after = self._line.text
-            if line is not None:
+            early = unseen and line is not None and self._is_answer(line)
+            if early:
+                self._erase(before)
+            elif line is not None:
                 self._echo("\n")
             elif after.startswith(before) and character != REDRAW:
                 self._echo(after[len(before) :])
             else:
                 self._erase(before)
                 self._echo(after)
-            return line
+            if unseen and self._line.replies > replies:
+                self._unseen -= 1
+                self._drop_begun()
+        if early:
+            self.too_early()
+        return None if early else line
 
     def _erase(self, text: str | None = None) -> None:
         """Erase the typed text from the screen; on a dumb terminal, begin a new line."""

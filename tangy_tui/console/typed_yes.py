@@ -49,6 +49,8 @@ class TypedYes:
         self._flush = flush or _flush_input
         self.drop_begun: Callable[[Callable[[str], bool]], None] = lambda dropped: None
         """Drops the line that is being typed, if a function returns True for it."""
+        self.written: Callable[[], object] = lambda: None
+        """Finds out when the question that was written is on the terminal."""
         self._clock = clock
         self._readable_from = clock()
         self._random = random.SystemRandom()
@@ -57,6 +59,8 @@ class TypedYes:
     def ask(self, typed: SimpleQueue[str | None] | None = None) -> str:
         """Drop answers typed ahead, and return the key for yes to a new question.
 
+        Write the question with it, and call `asked` then.
+
         Args:
             typed: the lines read so far, of which answers are dropped. In this case unread input is
                 kept, since it may be a stop.
@@ -64,12 +68,18 @@ class TypedYes:
         if self.typed and typed is None:
             self._flush()
         elif self.typed and typed is not None:
-            _drop_answers(typed)
             self.drop_begun(lambda begun: read_answer(begun) is not None)
+            _drop_answers(typed)
         self._readable_from = self._clock() + REACTION_SECONDS
         if self._digit:
             self.key = self._random.choice([digit for digit in DIGITS if digit != self.key])
         return self.key
+
+    def asked(self) -> None:
+        """Begin to take a yes: the question is written now, which may have taken time."""
+        if self.typed:
+            self._readable_from = self._clock() + REACTION_SECONDS
+            self.written()
 
     def ask_of(self, said: Verification, typed: SimpleQueue[str | None] | None = None) -> str:
         """Do so if a verification asks something; return the key for yes."""

@@ -69,11 +69,11 @@ def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
     return f"Tangy drives to {'the front' if going == FRONT else name(going)}.{waits}"
 
 
-def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
-    """Ask staff to approve the next behaviour."""
+def proposal_words(proposal: Proposal, name: Callable[[str], str], key: str = "Y") -> str:
+    """Ask staff to approve the next behaviour; `key` says yes."""
     whom = f" ({name(proposal.target)})" if proposal.target else ""
     because = shown_here(proposal.seen, proposal.share)
-    return f"Next: {proposal.behaviour}{whom}, {because}. Y: do it. N: tell Tangy what else."
+    return f"Next: {proposal.behaviour}{whom}, {because}. {key}: do it. N: tell Tangy what else."
 
 
 BY_KEYS: dict[NoteKind, str] = {

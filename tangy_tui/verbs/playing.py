@@ -12,6 +12,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.outcomes import fault_left, injecting_words
 from tangy_tui.text.policies import notice_words
+from tangy_tui.text.questions import TOO_EARLY
 from tangy_tui.verbs.common import print_json, print_line
 from tangy_tui.verbs.opening import say_notices
 
@@ -230,7 +231,8 @@ def staff_lines(
     write = print_line if typed is None else typed.write
     yes = TypedYes(terminal=is_typed(None), setting=workspace.settings.question)
     if typed is not None:
-        yes.drop_begun = typed.drop
+        yes.drop_begun, yes.written = typed.drop, typed.ask_terminal
+        typed.too_early = lambda: typed.write(TOO_EARLY)
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
     workspace.door.attach(control, lambda who: write(stopped_by_guest(who, control.by)))
     FreezeGuard(control, lambda seconds: write(told_words(seconds))).keep_looking()

@@ -152,3 +152,43 @@ def test_the_terminal_is_given_back_as_it_was() -> None:
     assert termios.tcgetattr(desk.child) == before
     desk.lines.prepare()  # as in a thread that still reads lines
     assert termios.tcgetattr(desk.child) == before
+
+
+def is_yes(line: str) -> bool:
+    return line.strip() == "y"
+
+
+def test_an_answer_counts_only_after_the_terminal_has_shown_its_question(desk: Desk) -> None:
+    told: list[str] = []
+    desk.lines.too_early = lambda: told.append("early")
+    desk.type("y")
+    wait_until(desk.shows("y"))
+    desk.lines.drop(is_yes)
+    desk.lines.write("Take it back?")
+    desk.type("y\rstop\r")
+    wait_until(lambda: desk.read == ["stop\n"])
+    desk.lines.ask_terminal()
+    desk.type("y\r")
+    wait_until(lambda: told == ["early", "early"])
+    desk.type("y\x1b[3;1R\ry\r")  # the first of these was begun before the terminal's reply
+    wait_until(lambda: desk.read == ["stop\n", "\n", "y\n"])
+
+
+def test_the_second_of_two_questions_needs_a_reply_of_its_own(desk: Desk) -> None:
+    for question in ("Call?", "Take it back?"):
+        desk.lines.drop(is_yes)
+        desk.lines.write(question)
+        desk.lines.ask_terminal()
+    desk.type("\x1b[3;1Ry\rwhere\r\x1b[4;1Ry\r")
+    wait_until(lambda: desk.read == ["where\n", "y\n"])
+
+
+def test_a_terminal_that_never_replies_is_not_asked_again(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tangy_tui.console.typed_lines.REPLY_SECONDS", 0.0)
+    for number in (1, 2):
+        desk.lines.drop(is_yes)
+        desk.lines.ask_terminal()
+        desk.type("y\r")
+        wait_until(lambda wanted=number: desk.read == ["y\n"] * wanted)  # type: ignore[misc]
