@@ -94,6 +94,16 @@ class EndingGames:
         self.joined, self.goes_on, self.going = True, self.going, True
         return [joins]
 
+    def end_joined(self, reason: str) -> None:
+        """End a game that is interrupted for a new person, if staff do not go on with it.
+
+        Args:
+            reason: why it ended, for people who read the log.
+        """
+        if self.joined and self.admission is not None:
+            self.joined = False
+            self.admission.end_game(reason)
+
     def follow(self, before: EndingGames) -> None:
         """Go on as the controller of a game that a person has joined, perhaps before a step.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, unaccented
 from tangy_profiles.room import SEAT
 from tangy_tui.app.game_commands import Joins, StaffNote
-from tangy_tui.app.interruption import find_interrupted, take_up
+from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 from tangy_tui.app.register import add_person
 from tangy_tui.app.rooms import check_places
 
@@ -91,6 +91,12 @@ class Admission:
         workspace.gather((*there[:place], id, *there[place:]))
         seat = f"{workspace.room.seat_word or SEAT} {place + 1}"
         return StaffNote("joins", id, seat)
+
+    def end_game(self, reason: str) -> None:
+        """Log the end of the game that is interrupted for a new person, with its reason."""
+        past = find_interrupted(self._workspace, self._world.played_in)
+        if past is not None:
+            end_interrupted(self._workspace, past, reason)
 
 
 def resume_joined(workspace: Workspace, world: GameWorld) -> PastGame | None:

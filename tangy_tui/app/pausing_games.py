@@ -31,6 +31,7 @@ class PausingGames(EndingGames):
 
     def _pause(self, *, unasked: bool) -> list[Result]:
         before, self.going, self.paused_itself = self.going, False, unasked
+        self.goes_on = self.goes_on and not self.joined
         self._stands(did=before and not unasked)
         return [StaffNote("paused")]
 
@@ -68,6 +69,7 @@ class PausingGames(EndingGames):
         if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
         self.going, self.paused_itself = True, False
+        self.goes_on = self.goes_on or self.joined
         return [StaffNote("goes on")]
 
     def _one_step(self) -> list[Result]:

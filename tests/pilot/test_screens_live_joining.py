@@ -10,7 +10,8 @@ import pytest
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.game_commands import SetAutonomy, StopRobot
+from tangy_profiles.game_records import GameEnding
+from tangy_tui.app.game_commands import Joins, SetAutonomy, StopRobot
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.live_games import play_live
@@ -139,3 +140,33 @@ async def test_a_person_who_leaves_is_drawn_as_away_at_once(
         await pilot.press(":", *"User 2 left", "enter")
         await until_shown(pilot, lambda: "○" in pilot.text())
         assert not live(pilot).control.going
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("leaves", [False, True])
+async def test_a_question_that_is_open_when_somebody_joins_is_answered_first(
+    run: Run, workspace: Workspace, policy: Policy, leaves: bool
+) -> None:
+    robot = Robot(workspace)
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        first = live(pilot)
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: "Leave in the middle of the game?" in pilot.text())
+        first.control.apply(Joins("Berta"))  # as if it had taken the robot so long
+        assert first.control.joined
+        await pilot.pause(0.2)
+        assert "Leave in the middle of the game?" in pilot.text() and len(robot.groups) == 1
+        await pilot.press("y" if leaves else "n")
+        if leaves:
+            await until_shown(pilot, lambda: robot.off == 1)
+            ends = [event.record for event in workspace.store.events(GameEnding)]
+            assert len(ends) == 1 and len(robot.groups) == 1
+        else:
+            await until_shown(pilot, lambda: "Berta takes part from now on." in pilot.text())
+            assert len(robot.groups) == 2

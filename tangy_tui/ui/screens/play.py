@@ -25,6 +25,8 @@ from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text import games as text
 from tangy_tui.text.control import noted_words
+from tangy_tui.text.interruptions import ENDED
+from tangy_tui.ui.base import on_top
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
@@ -179,6 +181,7 @@ class PlayScreen(PlayStaff):
         leaves = await self.app.push_screen_wait(dialog)
         self._leaving = False
         if leaves:
+            self.control.end_joined(ENDED)
             await self._come_to_rest()
             self._end_game()
             self.leave(self.tally)
@@ -231,6 +234,7 @@ class PlayScreen(PlayStaff):
             except TangyError as error:  # logging failed, so pause
                 await self._hold(str(error))
             if self.control.joined:
+                await on_top(self)  # staff may be answering a question, or on another page
                 self.leave(self.tally)
                 return
 
@@ -290,7 +294,7 @@ class PlayScreen(PlayStaff):
 
     async def _until_going(self) -> None:
         """Wait while the game is paused, or the robot stopped."""
-        while not self.control.going:
+        while not self.control.going and not self.control.joined:
             self.nudge.clear()
             await self.nudge.wait()
 
