@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.declared.whom import addressee
 from tangy_tui.learning.policy import SURE
 from tangy_tui.text.activities import selector_words
-from tangy_tui.text.numbers import listed
+from tangy_tui.text.numbers import counted, listed
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -119,6 +119,11 @@ WHY_HEADINGS = ("Based on", "Shown here as well", "Shown nearby")
 """Headings of the supporting, contradicting and similar steps."""
 HOW_SURE = "How sure Tangy is"
 """Heading of the share of the votes for each behaviour."""
+
+
+def earlier_words(count: int) -> str:
+    """Tell how many earlier steps are not shown yet, and how to see them."""
+    return f"  {counted(count, 'earlier step')}: enter shows {'it' if count == 1 else 'them'}"
 
 
 def strategy_title(name: str, strategy: str) -> str:

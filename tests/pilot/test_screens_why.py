@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -17,7 +18,7 @@ from tangy_tui.interaction.persuasion import StrategyChoice
 from tangy_tui.learning.explanation import DecisionReasons, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import load_policy
-from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.dialogs.why import MOST, WhyDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 from tangy_tui.ui.screens.home import HomeScreen
@@ -148,3 +149,23 @@ async def test_the_explanation_is_readable_in_ascii(run: Run, workspace: Workspa
     async with run(app=ascii_app) as pilot:
         await pilot.pause()
         assert pilot.text().isascii()
+
+
+async def test_the_newest_of_many_steps_come_first_and_the_others_on_demand(
+    run: Run, workspace: Workspace
+) -> None:
+    why = why_of(workspace, "call number")
+    steps = tuple(replace(why.rests_on[0], number=number) for number in range(1, 101))
+    many = replace(why, rests_on=steps, against=(), near=())
+    async with run(app=showing(workspace, many), size=LARGE) as pilot:
+        await pilot.pause()
+        page = pilot.app.screen.query_one(Page)
+        assert page.chosen == 99  # the index of the newest
+        await pilot.press("end")
+        assert page.cursor == MOST and page.chosen is not None and page.chosen >= len(steps)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert page.cursor == MOST and page.chosen == 99 - MOST
+        await pilot.press("end")
+        assert page.chosen == 0

@@ -19,7 +19,14 @@ from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.explanation import DecisionReasons
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
-from tangy_tui.text.decisions import HOW_SURE, WHY_HEADINGS, chosen_words, strategy_title, why_words
+from tangy_tui.text.decisions import (
+    HOW_SURE,
+    WHY_HEADINGS,
+    chosen_words,
+    earlier_words,
+    strategy_title,
+    why_words,
+)
 from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -32,12 +39,15 @@ from tangy_tui.ui.widgets.rows import Span, fit, shorten
 LONGEST_BAR = 20
 LONGEST_CURVE = 16
 SHORTEST_CURVE = 4
+MOST = 8
+"""The number of steps of a group that are shown at first, the newest."""
 
 
 class WhyDialog(Dialog[None]):
     """The situation, the votes, the steps behind a decision, and the draws of a strategy.
 
-    Up and down go from step to step and scroll; Enter opens the step in its demonstration.
+    Up and down go from step to step and scroll; Enter opens the step in its demonstration. The
+    newest steps come first; if there are many, Enter on the last line shows the others.
     """
 
     DEFAULT_CSS = """
@@ -51,7 +61,7 @@ class WhyDialog(Dialog[None]):
         "What this decision rests on: how sure Tangy is of each behaviour, which demonstrated "
         "steps say so or say otherwise, and for a way of speaking the number that was drawn from "
         "what is believed of each. Up and down choose a step and scroll; Enter opens it where it "
-        "was demonstrated."
+        "was demonstrated. The newest steps come first; Enter on the last line shows the others."
     )
 
     def __init__(
@@ -78,6 +88,7 @@ class WhyDialog(Dialog[None]):
         self._choice = choice
         self._title = clean(title)
         self._remarks = tuple(remarks)
+        self._whole = set[int]()  # the groups of steps that are shown in full
         library = read_library(workspace.store, workspace.activity.name)
         self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
 
@@ -104,6 +115,11 @@ class WhyDialog(Dialog[None]):
     def on_page_chosen(self, event: Page.Chosen) -> None:
         """Open a step in its demonstration."""
         event.stop()
+        if event.index >= len(self._why.steps):
+            self._whole.add(event.index - len(self._why.steps))
+            page = self.query_one(Page)
+            page.show(self._write, page.cursor)
+            return
         shown = self._why.steps[event.index]
         self.post_message(OpenStep(shown.demonstration, shown.number))
 
@@ -120,14 +136,18 @@ class WhyDialog(Dialog[None]):
     def _step_lines(self, width: int) -> list[PageLine]:
         why = self._why
         lines: list[PageLine] = []
-        number = 0
+        first = 0  # of a group, among all steps
         groups = (why.rests_on, why.against, why.near)
-        for title, steps in zip(WHY_HEADINGS, groups, strict=True):
+        for group, (title, steps) in enumerate(zip(WHY_HEADINGS, groups, strict=True)):
             if steps:
                 lines += heading(f"{title} {counted(len(steps), 'step')}")
-            for shown in steps:
-                lines.append(PageLine(self._step(shown, bool(why.near), width), number))
-                number += 1
+            few = steps if group in self._whole or len(steps) <= MOST + 1 else steps[-MOST:]
+            last = first + len(steps) - 1
+            for number, shown in enumerate(reversed(few)):
+                lines.append(PageLine(self._step(shown, bool(why.near), width), last - number))
+            if rest := len(steps) - len(few):
+                lines.append(PageLine(((earlier_words(rest), "dim"),), len(why.steps) + group))
+            first += len(steps)
         return lines
 
     def _step(self, shown: DemonstratedStep, elsewhere: bool, width: int) -> tuple[Span, ...]:

@@ -73,6 +73,11 @@ class Page(Choosable):
             return None
         return self._choices[self._cursor]
 
+    @property
+    def cursor(self) -> int | None:
+        """The position of the choice at the cursor, from 0."""
+        return self._cursor
+
     def show(self, write: Write, cursor: int | None = 0) -> None:
         """Replace the page, with the cursor on one of its choices."""
         self._write = write
