@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from difflib import get_close_matches
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import command_reader
+from tangy_tui.app.command_grammar import command_reader, read_inquiry
 from tangy_tui.app.game_commands import (
     ChangePace,
     ChoosePatterns,
@@ -32,6 +33,8 @@ _DUTY = re.compile(r"(?:on )?duty (.+)|(.+) is on duty", re.I)
 _ACTIVITY = re.compile(r"activity (.+)", re.I)
 _ROOM = re.compile(r"room (.+)", re.I)
 _SHOW = "show"
+NEAR = 0.7
+"""The least similarity of a word to the command that it may have meant."""
 _ACTIVITIES = ("activity", "activities")
 _ROOMS = ("room", "rooms")
 
@@ -65,6 +68,13 @@ class SetUpLines:
             if words.casefold() in _ROOMS:
                 self._write(text.rooms_line(self._rooms()))
                 continue
+            if read_inquiry(words) == "patterns":
+                rules = self.setup.workspace.activity.rules
+                self._write(text.patterns_to_choose(one.name for one in rules.patterns))
+                continue
+            if not words or read_inquiry(words) == "help":
+                self._write(text.LINES_HELP)
+                continue
             try:
                 done = self._own(words) or self._take(self._command(words))
             except TangyError as error:
@@ -75,8 +85,21 @@ class SetUpLines:
             if done:
                 self._tell_changes()
             else:
-                self._write(text.LINES_HELP)
+                self._tell_unknown(words)
         return False
+
+    def _tell_unknown(self, words: str) -> None:
+        """Tell which command may have been meant, or that it works only in a game."""
+        try:
+            in_a_game = self._command(words) is not None
+        except TangyError:
+            in_a_game = False
+        if in_a_game:
+            self._write(text.in_a_game_words(words))
+            return
+        first = words.partition(" ")[0].casefold()
+        near = get_close_matches(first, text.COMMANDS, 1, NEAR)
+        self._write(text.not_known_words(words, near[0] if near else ""))
 
     def begins_anyway(self) -> bool:
         """Write the results of the checks; if one failed, ask whether to begin."""
@@ -111,6 +134,8 @@ class SetUpLines:
         setup = self.setup
         if seat := _SEAT.fullmatch(words):
             person = self._find(seat[1])
+            if not 1 <= int(seat[2]) <= len(setup.seats):
+                raise TangyError(text.no_seat_words(len(setup.seats)))
             setup.move(person, int(seat[2]) - 1 - setup.seats.index(person))
         elif minutes := _MINUTES.fullmatch(words):
             setup.minutes = min(int(minutes[1]), 10 * MINUTES[-1])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import assert_never
 
 from tangy_profiles.reading import plain
@@ -222,6 +222,64 @@ LINES_HELP = (
     "words gentle, time 40, duty Nina. Show lists everything again. Then: begin. Or: end."
 )
 UNCHANGED = "That changes nothing."
+COMMANDS: Mapping[str, str] = {
+    **{word: f"{word} Rosa" for word in ("left", "here")},
+    **{word: f"{word} Anna" for word in ("guest", "add")},
+    "seat": "seat Rosa 3",
+    "rename": "rename Rosa to Rosie",
+    "activity": "activity trivia",
+    "activities": "activities",
+    "room": "room hall",
+    "rooms": "rooms",
+    "play": "play for line, full card",
+    "patterns": "patterns",
+    "several": "several winners",
+    "one": "one winner",
+    "pace": "pace 20",
+    "faster": "faster",
+    "slower": "slower",
+    "visits": "visits on",
+    "words": "words gentle",
+    "time": "time 40",
+    "duty": "duty Nina",
+    "show": "show",
+    "help": "help",
+    "begin": "begin",
+    "end": "end",
+}
+"""An example of each command of the set-up by lines, by its first word."""
+
+
+def not_known_words(typed: str, near: str) -> str:
+    """Tell that a line is no command of the set-up, and the command that it may have meant.
+
+    Args:
+        typed: the line.
+        near: the first word of the command; "" if none is similar.
+    """
+    first, example = typed.partition(" ")[0].casefold(), COMMANDS.get(near, "")
+    if near == first:
+        return plain(f"Tangy cannot do '{typed[:60]}'. Type it as in: {example}.")
+    meant = f"Did you mean: {example}?" if example else "help lists all commands."
+    return plain(f"Tangy does not know '{typed[:60]}'. {meant} All that you chose is kept.")
+
+
+def in_a_game_words(typed: str) -> str:
+    """Tell that a command works only in a game."""
+    return plain(f"'{typed[:60]}' works in a game. Nothing moves yet: begin starts it.")
+
+
+def no_seat_words(seats: int) -> str:
+    """Tell which seats there are."""
+    return f"The seats have the numbers 1 to {seats}."
+
+
+def patterns_to_choose(names: Iterable[str]) -> str:
+    """List the patterns to choose from."""
+    listed = ", ".join(names)
+    if not listed:
+        return "This activity has no patterns to choose."
+    return f"You can play for: {listed}. Type: play for, and one or more of them."
 
 
 def lines_anyway(not_ready: Sequence[Check]) -> str:

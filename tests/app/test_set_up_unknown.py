@@ -1,0 +1,64 @@
+"""Lines of the set-up that are no commands: the nearest one is told, and nothing is lost."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.set_up import SetUpLines
+from tangy_tui.text import set_up as text
+
+
+def answers(workspace: Workspace, *lines: str) -> tuple[SetUp, list[str]]:
+    """Return the set-up, and what is written after lines, of which the last leaves it."""
+    setup, said = SetUp.of(workspace), list[str]()
+    typed = iter((*lines, "end"))
+    first = len(text.lines_of(setup)) + 1
+    SetUpLines(setup, lambda: next(typed, None), said.append).run()
+    return setup, said[first:]
+
+
+@pytest.mark.parametrize(
+    ("typed", "near"),
+    [
+        ("seet User 2 1", "seat"),
+        ("begn", "begin"),
+        ("acitvity trivia", "activity"),
+        ("seat somewhere", "seat"),
+        ("time forty", "time"),
+        ("rename User 2 Rosa", "rename"),
+        ("banana", ""),
+    ],
+)
+def test_the_nearest_command_is_told(workspace: Workspace, typed: str, near: str) -> None:
+    setup, said = answers(workspace, "time 40", "left User 3", typed)
+    assert said[-1] == text.not_known_words(typed, near)
+    assert setup.minutes == 40 and setup.away == {"user3"}
+
+
+def test_a_command_of_games_is_known_but_works_later(workspace: Workspace) -> None:
+    for typed in ("pause", "call again", "stop", "bingo 17"):
+        assert answers(workspace, typed)[1] == [text.in_a_game_words(typed)]
+
+
+def test_help_and_patterns_are_answered_before_a_game(workspace: Workspace) -> None:
+    names = [pattern.name for pattern in workspace.activity.rules.patterns]
+    assert answers(workspace, "help", "patterns")[1] == [
+        text.LINES_HELP,
+        text.patterns_to_choose(names),
+    ]
+
+
+def test_a_seat_that_does_not_exist_is_refused(workspace: Workspace) -> None:
+    setup, said = answers(workspace, "seat User 2 30", "seat User 2 0")
+    assert said == [text.no_seat_words(4)] * 2
+    assert setup.seats == ["user1", "user2", "user3", "user4"]
+
+
+def test_every_example_of_a_command_is_understood(workspace: Workspace) -> None:
+    for word, example in text.COMMANDS.items():
+        if word not in ("begin", "end"):
+            typed = example.replace("Rosa to", "User 2 to").replace("Rosa", "User 3")
+            _, said = answers(workspace, typed)
+            assert said and text.not_known_words(typed, word) not in said, example
