@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 STARTING = "Its devices are being started. It stands still until the game begins."
 STARTING_AGAIN = "Its devices are being started again. It stands still until the game goes on."
+LEAVES_OFF, KEEPS_GAME = "leave it off", "leave it off, and keep the game for later"
 GAME_KEPT = "The game is kept: begin a live game to go on with it."
 READY, NOW = "Ready: {}.", "Starting now: {} ..."
 PARTS = {

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.text.live_games import CALLED_OFF, STARTING, STARTING_AGAIN
+from tangy_tui.text.live_games import CALLED_OFF, KEEPS_GAME, LEAVES_OFF, STARTING, STARTING_AGAIN
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
@@ -47,6 +47,7 @@ class SwitchingOnDialog(Dialog[None]):
         self._call_off = call_off
         self._parts = parts
         self._then = STARTING_AGAIN if again else STARTING
+        self._leaves = KEEPS_GAME if again else LEAVES_OFF
         self._told: Sequence[str] = ()
         self.called_off = False
         """Whether the start was cancelled."""
@@ -96,5 +97,5 @@ class SwitchingOnDialog(Dialog[None]):
             return Content.assemble(head, "\n\n", CALLED_OFF)
         parts = [f"\n{clean(line)}" for line in self._told]
         return Content.assemble(
-            head, *parts, "\n\n", self._then, "\n\n", ("ESC", "$success bold"), "  leave it off"
+            head, *parts, "\n\n", self._then, "\n\n", ("ESC", "$success bold"), f"  {self._leaves}"
         )
