@@ -34,11 +34,12 @@ from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.answering import AnsweredQuestions
 from tangy_tui.console.confirming import ConfirmingStaff
+from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.console.inputs import ReadAhead, any_waits
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.console.script_waits import ScriptWaits
 from tangy_tui.console.typed_yes import TypedYes
-from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
+from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, Taught
 from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.learning.verification import (
     NotUnderstood,
@@ -54,7 +55,6 @@ from tangy_tui.text.control import noted_words
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.questions import ANSWER_HELP
 from tangy_tui.text.situations import Name
-from tangy_tui.text.telling import waiting_words
 
 Task: TypeAlias = Callable[[], Sequence[ControllerOutput]]
 LOOK_SECONDS = 0.1  # between two checks of the devices, and for the next line
@@ -97,13 +97,13 @@ class StaffLines:
         self._read, self._speed, self._also = read, speed, also
         self._yes = yes or TypedYes()
         self._sure = ConfirmingStaff(controller, self._yes, self._write)
-        self._waits = ScriptWaits(controller, self._tell_where_it_goes)
+        self._waits = ScriptWaits(controller, self._tell_progress)
         self._inquiries = Inquiries(controller, name, demonstrations)
         self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, self._write)
         self._ahead: ReadAhead = ReadAhead(read) if before is None else before._ahead
         self._writing = threading.Lock()
         self._write_line = write
-        self._going = ("", "", ("", tuple[str, ...]()))
+        self._progress = ProgressLines(controller, name)
         self._stopped: bool = before is not None and before._stopped
         self._ended = self._by_turns = self._leaves = False  # leaves: while no game could begin
         self.played = 0
@@ -219,7 +219,10 @@ class StaffLines:
                 broken_off = isinstance(one, GameEnded) and one.stopped is not None
                 self._stopped |= broken_off and not self._ended
                 on = self._controller.goes_on
-                self._write_all(game_lines(one, self._game, self._name, answered, goes_on=on))
+                lines = game_lines(one, self._game, self._name, answered, goes_on=on)
+                if isinstance(one, Acted):
+                    lines = self._progress.step(one, lines)
+                self._write_all(lines)
         self._write_all(filter(None, self._also(events)))
 
     def _write(self, line: str) -> None:
@@ -240,7 +243,7 @@ class StaffLines:
         """
         early = self._ahead.early
         while playing.is_alive():
-            self._tell_where_it_goes()
+            self._tell_progress()
             if early and self._begun.is_set() and not self._controller.taking_over:
                 self._take_or_wait(early.popleft(), playing)
                 continue
@@ -270,14 +273,10 @@ class StaffLines:
             else:
                 early.append(line.strip())
 
-    def _tell_where_it_goes(self) -> None:
-        """Write where the robot drives, or its question about a card."""
-        robot = self._controller.robot
-        if (going := (robot.going, robot.lets, robot.asks_about)) != self._going:
-            self._going = going
-            if words := waiting_words(*going, self._game.world.activity.object, self._name):
-                self._write(words)
-        if self._ahead.ended and going[2][0]:
+    def _tell_progress(self) -> None:
+        """Write where the robot drives, what it says, or its question about a card."""
+        self._write_all(self._progress.news())
+        if self._ahead.ended and self._progress.asks:
             self._tell([*self._controller.apply(EndGame())])
 
     def _is_due(self, line: str, early: deque[str]) -> bool:

@@ -78,7 +78,7 @@ def game_lines(
             return [
                 f"{number}. {moment_words(activity, state, name)} -> "
                 f"{action.behaviour.question}{target}{how}, {why}",
-                f"   Tangy says: {speech}" if outcome.completed else NOT_FINISHED,
+                f"   {says_line(speech)}" if outcome.completed else NOT_FINISHED,
             ]
         case Diagnosed() | Moved():
             return fault_lines(event)
@@ -110,6 +110,11 @@ def game_lines(
             return changed_lines(event, activity, name)
         case GameEnded(pauses=pauses):
             return [ended_words(event), *paused_lines(*pauses)]
+
+
+def says_line(speech: str) -> str:
+    """Tell what Tangy says."""
+    return f"Tangy says: {speech}"
 
 
 def ended_words(ended: GameEnded) -> str:

@@ -1,0 +1,50 @@
+"""Lines tell what Tangy says while it says it, and once."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import cast
+
+from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.console.in_progress import ProgressLines
+from tangy_tui.interaction.game_events import Acted
+from tests.app.test_declared_interruption import live, play
+
+NAMES = {"user1": "Rosa", "user2": "Ben", "user3": "Ann"}
+
+
+class Told:
+    """A live game of trivia, and what its lines tell."""
+
+    def __init__(self) -> None:
+        self.world: DeclaredLiveWorld = live("trivia")
+        robot = SimpleNamespace(going="", lets="", asks_about=("", ()))
+        control = SimpleNamespace(robot=robot, supervision=SimpleNamespace(world=self.world))
+        self.lines = ProgressLines(cast(GameController, control), NAMES.__getitem__)
+        self.world.begin()
+
+    def done(self) -> list[str]:
+        """Return the lines about a step that is over."""
+        speech = self.world.saying
+        for person, name in NAMES.items():
+            speech = speech.replace(person, name)
+        acted = cast(Acted, SimpleNamespace(speech=speech))
+        return self.lines.step(acted, ["1. begins -> ask", f"   Tangy says: {speech}"])
+
+
+def test_words_are_told_during_the_step_and_not_again_after_it() -> None:
+    told = Told()
+    assert told.lines.news() == []
+    play(told.world, 1)  # the speech has begun, and the step is not reported yet
+    (said,) = told.lines.news()
+    assert told.world.saying and said.startswith("Tangy says: ")
+    assert told.lines.news() == []
+    assert told.done() == ["1. begins -> ask"]
+
+
+def test_words_of_a_step_that_was_over_at_once_are_told_with_it() -> None:
+    told = Told()
+    play(told.world, 1)
+    assert len(told.done()) == 2
+    assert told.lines.news() == []
