@@ -133,21 +133,25 @@ class GameController(PausingGames):
         return self.autonomy.proposal
 
     def begin(self) -> list[Event]:
-        """Release the robot and begin a game, or resume one, paused; if it is stopped, do nothing.
+        """Release the robot and begin a game, or resume one, paused.
+
+        If the robot is stopped, it stays so: a game is resumed, but no new one begins.
 
         Raises:
             NotResumable: the world cannot restore the state of the interrupted game.
         """
         with self._turn, serving():
-            if self.stopped:
+            stopped = self.stopped
+            if stopped and self.past is None:
                 return []
             self.taking_over = self.single = self.paused_itself = False
-            self.going = self.past is None or self.goes_on
+            self.going = not stopped and (self.past is None or self.goes_on)
             self.autonomy.reset()
-            self.robot.release(everybody=True)
-            if self.stopped:  # in the meantime
-                self.robot.stop()
-                return []
+            if not stopped:
+                self.robot.release(everybody=True)
+                if self.stopped:  # in the meantime
+                    self.robot.stop()
+                    return []
             past, self.past = self.past, None
             events = self.supervision.begin(past, self.by)
             world = self.supervision.world

@@ -115,12 +115,14 @@ async def test_a_stop_meanwhile_holds(run: Run, workspace: Workspace, policy: Po
         await pilot.press(":", *"add Berta", "enter")
         await until_shown(pilot, lambda: "Nina stopped the robot" in pilot.text())
         second = live(pilot)
-        assert second is not first and second.control.stopped and second.at_rest
+        await until_shown(pilot, lambda: "back where it was" in pilot.text())
+        assert second is not first and second.control.phase == "stopped"
+        assert tuple(second.world.called) == tuple(first.world.called)
         assert robot.links[1].held_by and not robot.links[1].done
         await pilot.press("p")
         await until_shown(pilot, lambda: "Let the robot move again?" in pilot.text())
         await pilot.press("y")
-        await until_shown(pilot, lambda: not second.at_rest)
+        await until_shown(pilot, lambda: second.control.phase == "running")
         assert not second.control.stopped and not robot.links[1].held_by
 
 

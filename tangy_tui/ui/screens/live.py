@@ -151,7 +151,8 @@ class LiveScreen(PlayScreen):
         return self._supervision.over and not self.working
 
     async def _begin_game(self) -> list[Event]:
-        await self._until_going()
+        if not (self.control.stopped and self.control.past is not None):
+            await self._until_going()
         if self.world.lost:
             self._write(LOOKS_ROUND, "warn")
         return await super()._begin_game()
