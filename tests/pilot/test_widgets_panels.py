@@ -353,6 +353,17 @@ async def test_the_status_line_always_shows_robot_and_stop(run: Run, width: int)
         assert "facilitate" in line
 
 
+async def test_a_long_stage_is_cut_and_the_note_beside_it_stays(run: Run) -> None:
+    stage = "a question about the seasons was asked, and nobody in the group has answered it yet"
+    status = Status("live Trivia", "OK", stage, 3, 12, note="drives to Rosa")
+    async with run(One(StatusLine(status)), (80, 18)) as pilot:
+        line = pilot.text().splitlines()[0]
+        assert stage[:20] in line and "drives to" in line and "game 3" not in line
+    async with run(One(StatusLine(status)), (160, 18)) as pilot:
+        line = pilot.text().splitlines()[0]
+        assert stage in line and "game 3" in line and "drives to Rosa" in line
+
+
 async def test_the_status_line_shows_mode_robot_game_and_step(run: Run) -> None:
     line = StatusLine(Status("teach", "OK", "help", 3, 12))
     async with run(One(line)) as pilot:

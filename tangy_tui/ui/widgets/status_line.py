@@ -13,6 +13,8 @@ from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 STOP = "^x STOP"
 GAP = " │ "
+LEAST = 12
+"""The least width in cells of a part that is cut."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +22,8 @@ class Status:
     """The parts of the status line; empty ones are left out.
 
     `robot` and STOP are shown at every width; if there is no room, the step is dropped first, since
-    its list shows it too, then the others from the right.
+    its list shows it too, then the game; then a long stage is cut, and the others are dropped from
+    the right.
     `stage` is the phase of the game in words.
     `alarm` shows the robot's part as a warning, with a mark; `seen` is the coverage of situations.
     """
@@ -71,13 +74,16 @@ class StatusLine(InkedWidget):
         if status.robot:
             word = f"{mark}robot {clean(status.robot)}"
             parts.append((word, "bad" if status.alarm else "good"))
-        if status.stage:
-            parts.append((clean(status.stage), "robot"))
-        if status.game is not None:
-            parts.append((f"game {status.game}", "text"))
+        room = width - len(STOP) - 1
+        stage, game = self._stage_and_game(
+            room - sum(cell_len(text) + len(GAP) for text, _ in parts)
+        )
+        if stage:
+            parts.append((stage, "robot"))
+        if game:
+            parts.append((game, "text"))
         if status.seen:
             parts.append((f"seen {clean(status.seen)}", "text"))
-        room = width - len(STOP) - 1
         if status.note:
             parts.append((clean(status.note), "dim"))
         if status.step is not None:
@@ -90,10 +96,22 @@ class StatusLine(InkedWidget):
         for n, (text, name) in enumerate(parts):
             gap = GAP if row else ""
             left = room - used - len(gap)
-            if n >= 2 and cell_len(text) > left and (n < len(parts) - 1 or left < 12):
+            if n >= 2 and cell_len(text) > left and (n < len(parts) - 1 or left < LEAST):
                 break
             text = shorten(text, left)
             row += [(gap, "dim"), (text, name)]
             used += len(gap) + cell_len(text)
         row += [(" " * max(0, width - used - len(STOP)), "text"), (STOP, "bad")]
         return tuple(row)
+
+    def _stage_and_game(self, room: int) -> tuple[str, str]:
+        """Return the stage, cut if it is too long, and the game, "" if there is no room for it."""
+        status = self._status
+        stage = clean(status.stage)
+        game = "" if status.game is None else f"game {status.game}"
+        seen = len(GAP) + cell_len(f"seen {clean(status.seen)}") if status.seen else 0
+        note = len(GAP) + min(cell_len(clean(status.note)), LEAST) if status.note else 0
+        left = room - seen - note
+        if cell_len(stage) + (len(GAP) + len(game) if game else 0) <= left:
+            return stage, game
+        return shorten(stage, max(left, LEAST)), "" if stage else game
