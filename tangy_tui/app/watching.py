@@ -189,6 +189,7 @@ class WatchedLog:
         self.over = False
         """Whether the newest game has an end in the log."""
         self._known: dict[str, Activity | None] = {}
+        self._usual = {p.id: p.name for p in load_people(MOST_PEOPLE)}
         self.names: Mapping[str, str] = {}
         """The names of the people, by id."""
 
@@ -210,7 +211,7 @@ class WatchedLog:
         begun = game.id != self._game
         if begun:
             self._game, self._told, self.over = game.id, 0, False
-            self.names = {p.id: p.name for p in load_people(MOST_PEOPLE)} | self._store.names()
+        self.names = self._usual | self._store.names()  # a new person may have joined
         activity = self.activity(game.activity)
         known = {} if activity is None else {game.activity: activity}
         (replay,) = read_replays(self._store, [game], known, self.names)

@@ -10,6 +10,7 @@ import pytest
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.joining import let_join
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
@@ -121,3 +122,16 @@ async def test_no_other_key_changes_the_game(
         await pilot.press(*"pEgcodhiaer.<>", "f2", "enter")
         await pilot.pause()
     assert (control.phase, control.supervision.steps) == ("running", 5)
+
+
+async def test_the_room_is_drawn_again_for_a_person_who_joins(
+    workspace: Workspace, learnt: Policy, control: GameController, screen: WatchScreen, run: Run
+) -> None:
+    async with run(screen, size=LARGE) as pilot:
+        await until(lambda: screen.query(RoomView))
+        new = let_join(workspace, "Berta")
+        more = scripted_controller(workspace.supervision(learnt, 6))
+        more.begin()
+        workspace.door.attach(more)
+        await until_shown(pilot, lambda: "Berta" in pilot.text())
+        assert new in screen.query_one(RoomView).scene.doing

@@ -82,13 +82,13 @@ class WatchScreen(TangyScreen[None]):
             yield panel(LogView(id="log"))
         yield KeyLine("filter", "zoom", "palette", "quit", "help")
 
-    def on_mount(self) -> None:
+    async def on_mount(self) -> None:
         """Start to poll."""
         log = self.query_one(LogView)
         for sentence in (self._note, text.READ_ONLY):
             if sentence:
                 log.write(sentence, "dim")
-        self.look()
+        await self.look()
         if not self._there:
             log.write(text.NOBODY, "warn")
         self.set_interval(WATCH_SECONDS, self.look)
@@ -109,7 +109,7 @@ class WatchScreen(TangyScreen[None]):
         else:
             log.write(text.ASKED_TO_STOP, "warn")
 
-    def look(self) -> None:
+    async def look(self) -> None:
         """Show new events."""
         was, stops = self._there, self._guest.stops
         self._there = self._guest.look()
@@ -123,7 +123,7 @@ class WatchScreen(TangyScreen[None]):
             self.query_one(LogView).write(text.STOPPED_HERE, "bad")
         if self._guest.view != self._view:
             self._view = self._guest.view
-            self._show_room()
+            await self._show_room()
         self._show_status()
 
     def _tell_log(self) -> None:
@@ -144,14 +144,14 @@ class WatchScreen(TangyScreen[None]):
         if news.game.ended is not None:
             log.write(news.game.ending, "good" if news.game.smooth else "bad")
 
-    def _show_room(self) -> None:
+    async def _show_room(self) -> None:
         view = self._view
         if view is None:
             return
         people = tuple(view.scene.doing)
         if (view.activity, people) != self._shown:
             self._shown = view.activity, people
-            self._lay_out(view, people)
+            await self._lay_out(view, people)
         for room in self.query(RoomView):
             room.show(view.scene)
             room.hold(view.phase in ALARMS)
@@ -170,10 +170,10 @@ class WatchScreen(TangyScreen[None]):
         called, activity = view.scene.called, self._activity
         return activity.deck.label(called[-1]).replace("-", "") if called and activity else ""
 
-    def _lay_out(self, view: GameView, people: tuple[str, ...]) -> None:
+    async def _lay_out(self, view: GameView, people: tuple[str, ...]) -> None:
         """Create room and board again for the people and the activity of a game."""
         left = self.query_one("#left", Vertical)
-        left.remove_children(".panel")
+        await left.remove_children(".panel")  # before the new panels get the same ids
         self._activity = self._log.activity(view.activity)
         room = room_of(view, self._log.folder)
         seated = room.placed([Person(one, self._called(one)) for one in people])
