@@ -114,10 +114,20 @@ class Room:
 
         It is the last place at the table that gets a person more.
         """
+        return self.next_places(count)[1][-1]
+
+    def next_places(self, count: int) -> tuple[int, range]:
+        """Return the table that gets a person more than `count`, and its places then, from 0.
+
+        At any of these places the person makes nobody else change tables.
+        """
         now, then = self.at_tables(count), self.at_tables(count + 1)
-        grows = (after.stop - 1 for before, after in zip(now, then, strict=True)
-                 if len(after) > len(before))  # fmt: skip
-        return next(grows, count)
+        grows = (
+            (table, after)
+            for table, (before, after) in enumerate(zip(now, then, strict=True))
+            if len(after) > len(before)
+        )
+        return next(grows, (0, range(count, count + 1)))
 
     @property
     def _seats_at_tables(self) -> tuple[tuple[Point, ...], ...]:

@@ -196,7 +196,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("several winners", "everybody with the pattern at the same call wins; or: one winner"),
     ("visits on", "also visits people who do not ask; or: visits off"),
     ("here NAME, left NAME", "somebody has come, or has left"),
-    ("add NAME", "a new person joins the live game; or, only for today: guest NAME"),
+    ("add NAME", "a new person joins; on a seat: add NAME on seat 3; only for today: guest NAME"),
     ("ask for NAME", "asks for help for somebody who cannot"),
     ("NAME: B", "tells Tangy what a person answers or does, in activities such as a quiz"),
     ("answer: B", "the same for the person the game is waiting for"),

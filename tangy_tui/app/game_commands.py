@@ -140,10 +140,15 @@ class GoesAway:
 
 @dataclass(frozen=True, slots=True)
 class Joins:
-    """Let a new person take part, by name; a guest only today."""
+    """Let a new person take part, by name; a guest only today.
+
+    The `seat` and the `table` count from 1; 0: the last seat at the table that has room.
+    """
 
     name: str
     guest: bool = False
+    seat: int = 0
+    table: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,6 +346,7 @@ RefusalKind = Literal[
     "which person",
     "most people",
     "no seat",
+    "no seat there",
     "not at front",
     "not acceptable",
     "cannot",

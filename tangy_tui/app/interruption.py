@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -42,11 +43,13 @@ def can_join(workspace: Workspace, past: PastGame) -> bool:
     return past.world != SIMULATED and not workspace.activity.teams
 
 
-def take_up(workspace: Workspace, past: PastGame) -> TakenUp:
+def take_up(
+    workspace: Workspace, past: PastGame, places: Mapping[str, int] | None = None
+) -> TakenUp:
     """Restore the seats and the room of an interrupted game that is resumed.
 
-    People who came meanwhile join it on the next seats if possible. People who no longer take part
-    count as participants of this game.
+    People who came meanwhile join it if possible: at their `places` (from 0), or on the next seats.
+    People who no longer take part count as participants of this game.
 
     Raises:
         TangyError: its room is not available, or is too small.
@@ -64,7 +67,8 @@ def take_up(workspace: Workspace, past: PastGame) -> TakenUp:
     workspace.gather((*there, *joins))
     going_on = replace(past, newcomers=joins)
     for person in joins:
-        place = workspace.room.next_place(len(going_on.beginning.people))
+        next_place = workspace.room.next_place(len(going_on.beginning.people))
+        place = next_place if places is None else places[person]
         going_on = going_on.joined_by(person, workspace.activity.unread, place)
     workspace.gather(going_on.beginning.people)
     return TakenUp(going_on, () if joins else new)

@@ -76,6 +76,11 @@ class Admission:
             return StaffNote("most people", str(MOST_PEOPLE))
         if len(people) >= room.places:
             return StaffNote("no seat", str(room.places), room.title)
+        table, places = room.next_places(len(people))
+        if (joins.seat and joins.seat - 1 not in places) or joins.table not in (0, table + 1):
+            seats = f"{room.seat_word or SEAT} {places.start + 1}"
+            seats += f" to {places.stop}" if len(places) > 1 else ""
+            return StaffNote("no seat there", str(table + 1) if room.tables else "", seats)
         check_new_name(workspace.activity, people, Person(NEW, name))
         return None
 
@@ -87,10 +92,20 @@ class Admission:
         """
         workspace, there = self._workspace, self._world.people
         id = let_join(workspace, joins.name.strip(), guest=joins.guest)
-        place = workspace.room.next_place(len(there))
+        place = joins.seat - 1 if joins.seat else workspace.room.next_place(len(there))
         workspace.gather((*there[:place], id, *there[place:]))
         seat = f"{workspace.room.seat_word or SEAT} {place + 1}"
         return StaffNote("joins", id, seat)
+
+    @property
+    def seats(self) -> dict[int, tuple[str, ...]]:
+        """The seats (from 1) that a new person can take, each with the ids of the neighbours."""
+        people = [person.id for person in self._workspace.people]
+        _, places = self._workspace.room.next_places(len(people))
+        beside = people[places.start : places.stop - 1]
+        return {
+            place + 1: tuple(beside[max(0, at - 1) : at + 1]) for at, place in enumerate(places)
+        }
 
     def end_game(self, reason: str) -> None:
         """Log the end of the game that is interrupted for a new person, with its reason."""
@@ -100,12 +115,13 @@ class Admission:
 
 
 def resume_joined(workspace: Workspace, world: GameWorld) -> PastGame | None:
-    """Return the game that a person has just joined, to resume it with them.
+    """Return the game that a person has just joined, to resume it with them at their seat.
 
     None if it had no step: then a new game begins with them.
     """
     past = find_interrupted(workspace, world)
-    return None if past is None else take_up(workspace, past).past
+    sit = {person: place for place, person in enumerate(workspace.names)}
+    return None if past is None else take_up(workspace, past, sit).past
 
 
 def carry_over(before: LiveWorld, world: LiveWorld) -> None:

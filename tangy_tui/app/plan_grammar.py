@@ -24,7 +24,11 @@ CHECK = "check"
 _PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
 _PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
 _MOVED = re.compile(r"(here|left) (.+)|(.+?) (is here|has come|left|has left)", re.I)
-_JOINS = re.compile(r"(add|guest)(?: (.+))?|(.+?) (?:joins|joins in|joins us)", re.I)
+_JOINS = re.compile(
+    r"(?:(add|guest)(?: (.+?))?|(.+?) joins(?: in| us)?)"
+    r"(?:,? (?:at|on|in|to) (?:(table) |seat |chair |place )(\d{1,2}))?",
+    re.I,
+)
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
@@ -49,7 +53,10 @@ def read_planned(
         names = [one.strip() for one in re.split(r",|\bthen\b", patterns[1]) if one.strip()]
         return ChoosePatterns(tuple(rules.pattern(name).name for name in names))
     if joins := _JOINS.fullmatch(said):
-        return Joins(joins[2] or joins[3] or "", (joins[1] or "").casefold() == "guest")
+        place = int(joins[5] or 0)
+        seat, table = (0, place) if joins[4] else (place, 0)
+        guest = (joins[1] or "").casefold() == "guest"
+        return Joins(joins[2] or joins[3] or "", guest, seat, table)
     if moved := _MOVED.fullmatch(said):
         come = (moved[1] or moved[4]).casefold() in ("here", "is here", "has come")
         try:

@@ -139,6 +139,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return joining.which_words(noted.words, [*map(name, noted.people)])
         case "most people":
             return joining.full_words(about)
+        case "no seat there":
+            return joining.no_seat_there_words(noted.words, about)
         case "no seat":
             return joining.no_seat_words(noted.words, about)
         case "goes":

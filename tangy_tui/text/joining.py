@@ -42,3 +42,24 @@ def no_seat_words(room: str, seats: str) -> str:
         f"All {seats} seats of {room} are taken. End the game, and choose a room with more "
         "seats before the next one."
     )
+
+
+WHERE = "Where does {} sit?"
+
+
+def no_seat_there_words(seats: str, table: str) -> str:
+    """Tell which seats a new person can take, at which table if there are several."""
+    if table:
+        return f"There is room at table {table}, on {seats}: then nobody changes tables."
+    return f"There is room on {seats}."
+
+
+def beside_words(neighbours: Sequence[str]) -> str:
+    """Tell between whom a seat is, or beside whom at the end of a table."""
+    match neighbours:
+        case (before, after):
+            return f"between {before} and {after}"
+        case (one,):
+            return f"beside {one}"
+        case _:
+            return ""

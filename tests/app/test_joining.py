@@ -94,6 +94,9 @@ def known(workspace: Workspace, *names: str) -> None:
         ("Berta Blum joins", Joins("Berta Blum")),
         ("guest Berta", Joins("Berta", guest=True)),
         ("add", Joins("")),
+        ("add Berta Blum on seat 3", Joins("Berta Blum", seat=3)),
+        ("guest Berta, at table 2", Joins("Berta", guest=True, table=2)),
+        ("Berta joins at seat 12", Joins("Berta", seat=12)),
     ],
 )
 def test_staff_say_who_joins(typed: str, joins: Joins) -> None:
@@ -193,6 +196,45 @@ def test_a_person_who_joined_sits_there_in_the_next_set_up(taught: Path) -> None
     workspace.gather(sorted(sat))
     assert workspace.seats_before == sat
     workspace.close()
+
+
+def test_staff_say_where_a_person_who_joins_sits(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.play(3)
+    assert before.told(Joins("Berta", seat=6)) == StaffNote("no seat there", words="seat 1 to 5")
+    assert admission(before).seats[1] == ("user1",)
+    assert admission(before).seats[2] == ("user1", "user2")
+    note = before.told(Joins("Berta", seat=2))
+    assert (note.about, note.words) == ("user5", "seat 2")
+    after = LiveGame(workspace, resume_joined(workspace, LIVE))
+    sat = ("user1", "user5", "user2", "user3", "user4")
+    assert after.world.people == sat
+    after.play(1)
+    workspace.close()  # and kill -9
+
+    workspace = Workspace(taught)
+    past = find_interrupted(workspace, LIVE)
+    assert past is not None and past.beginning.people == sat
+    assert tuple(workspace.seats_before) == sat
+    workspace.close()
+
+
+def test_nobody_changes_tables_for_a_person_who_joins(taught: Path) -> None:
+    workspace = Workspace(taught, users=10)  # four at the first table, three at the others
+    game = LiveGame(workspace)
+    game.play(3)
+    refused = StaffNote("no seat there", "2", "seat 5 to 8")
+    for joins in (Joins("Berta", seat=4), Joins("Berta", seat=9), Joins("Berta", table=1)):
+        assert game.told(joins) == refused
+    assert list(admission(game).seats) == [5, 6, 7, 8]
+    assert game.told(Joins("Berta", table=2)).words == "seat 8"
+    workspace.close()
+
+
+def admission(game: LiveGame) -> Admission:
+    assert game.control.admission is not None
+    return game.control.admission
 
 
 def test_a_guest_joins_for_today(taught: Path) -> None:

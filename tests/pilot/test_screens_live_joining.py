@@ -73,9 +73,11 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         await pilot.press(*"Berta", "enter")
         await until_shown(pilot, lambda: "Is Berta here for good?" in pilot.text())
         await pilot.press("enter")
+        await until_shown(pilot, lambda: "Where does Berta sit?" in pilot.text())
+        await pilot.press("down", "enter")
         await until_shown(pilot, lambda: "Berta takes part from now on." in pilot.text())
         assert live(pilot) is not first
-        assert robot.off == 1 and robot.groups[1] == (*robot.groups[0], "user5")
+        assert robot.off == 1 and robot.groups[1] == (*robot.groups[0][:3], "user5", "user4")
         assert workspace.name("user5") == "Berta"
         assert tuple(live(pilot).world.called)[: len(called)] == called
         assert not live(pilot).control.going  # as before

@@ -5,9 +5,12 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 
 from textual.timer import Timer
 
+from tangy_profiles.errors import TangyError
+from tangy_profiles.room import SEAT
 from tangy_tui.app.command_grammar import Perform, command_reader, read_command, read_screen
 from tangy_tui.app.confirmations import Confirmation, needed_confirmation
 from tangy_tui.app.fault_commands import Result
@@ -31,7 +34,7 @@ from tangy_tui.app.game_commands import (
     Tell,
 )
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.joining import NEW
+from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
@@ -48,7 +51,7 @@ from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
-from tangy_tui.ui.joining import ask_who_joins
+from tangy_tui.ui.joining import ask_where, ask_who_joins
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted
 
@@ -233,10 +236,31 @@ class PlayStaff(PlayPanels):
         if self.control.admission is not None:
             options.append(Option(NEW, *SOMEBODY_NEW))
         person = await self.app.push_screen_wait(ChooseDialog(WHO_IS_HERE, options))
-        if person == NEW and (who := await ask_who_joins(self.app)) is not None:
-            self._do(Joins(*who))
+        if person == NEW and (admission := self.control.admission) is not None:
+            await self._let_join(admission)
         elif person not in (None, NEW):
             self._do(ComesIn(person) if person in away else GoesAway(person))
+
+    async def _let_join(self, admission: Admission) -> None:
+        """Ask who joins and where they sit, unless the person would be refused."""
+        workspace = self._workspace
+        if (who := await ask_who_joins(self.app)) is None:
+            return
+        joins = Joins(*who)
+        try:
+            refused = self.control.refusal() or admission.refusal(joins)
+        except TangyError:
+            refused = StaffNote("cannot")
+        if refused is None:
+            seats = {
+                seat: [workspace.name(person) for person in beside]
+                for seat, beside in admission.seats.items()
+            }
+            seat = await ask_where(self.app, joins.name, seats, workspace.room.seat_word or SEAT)
+            if seat is None:
+                return
+            joins = replace(joins, seat=seat)
+        self._do(joins)  # which tells the refusal
 
     def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:
         """Carry out a command typed during a question."""
