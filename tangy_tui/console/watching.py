@@ -10,7 +10,7 @@ from pathlib import Path
 from tangy_profiles.codec import encode
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.app.watching import WATCH_SECONDS, Guest, WatchedLog
+from tangy_tui.app.watching import WATCH_SECONDS, Guest, News, WatchedLog
 from tangy_tui.text import watching as text
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
@@ -51,7 +51,10 @@ class WatchingLines:
     def look(self) -> None:
         """Write new events."""
         self._there = self.guest.look()
-        news = self._log.news()
+        self._tell_news(self._log.news())
+        self._tell_phase()
+
+    def _tell_news(self, news: News | None) -> None:
         if news is not None:
             if self._as_json:
                 for moment in news.moments:
@@ -65,14 +68,16 @@ class WatchingLines:
                         self._write(plain(line))
                 if news.game.ended is not None:
                     self._write(plain(news.game.ending))
-        self._tell_phase()
 
     def _tell_first(self) -> None:
         self._there = self.guest.look_first()
+        news = self._log.news()  # it knows people's names, and the activity
         if not self._as_json:
-            lines = text.view_lines(self.guest.view, None, self._name)
+            activity = None if news is None else news.activity
+            lines = text.view_lines(self.guest.view, activity, self._name)
             for line in lines if self._there else [text.NOBODY]:
                 self._write(plain(line))
+        self._tell_news(news)
 
     def _tell_phase(self) -> None:
         view = self.guest.view

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.game_commands import Phase
@@ -101,15 +103,20 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
     """Describe the time, who waits for help, and the calls."""
     waits, called = waiting_words(view, name), called_words(view, activity)
-    now = f"{time_words(view.seconds, view.minutes, view.paused)}{f'. {waits}' if waits else ''}."
-    return [now, called] if called else [now]
+    time = time_words(view.seconds, view.minutes, view.paused, _now(view))
+    told = f"{time}{f'. {waits}' if waits else ''}."
+    return [told, called] if called else [told]
+
+
+def _now(view: GameView) -> datetime | None:
+    """Return the local time of day, if the time of the game is that of the home."""
+    return local_now() if view.world in (BENCH, LIVE) else None
 
 
 def facts(view: GameView) -> list[Fact]:
     """Return the facts beside the call."""
     called = len(view.scene.called)
-    now = local_now() if view.world in (BENCH, LIVE) else None
     return [
-        time_facts(view.seconds, view.minutes, view.paused, now),
+        time_facts(view.seconds, view.minutes, view.paused, _now(view)),
         f"{called} called" if called else "",
     ]

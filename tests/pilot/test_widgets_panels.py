@@ -391,6 +391,10 @@ def test_fit_shorten_and_wrap_count_cells() -> None:
     assert wrap("one two three", 7) == ["one two", "three"]
     assert wrap("abcdefghij", 4) == ["abcd", "efgh", "ij"]
     assert wrap("", 4) == [""]
+    assert wrap("a call every 10\N{NO-BREAK SPACE}s", 15) == [
+        "a call every",
+        "10\N{NO-BREAK SPACE}s",
+    ]
 
 
 async def test_the_log_stays_at_its_end_after_shrinking(run: Run) -> None:
