@@ -117,11 +117,11 @@ class RecentScans:
 
 def _distinct(poses: Floats, most: int) -> Floats:
     """Return the first `most` of the poses (n, 3) that contradict each other."""
-    chosen: list[Floats] = []
-    while len(poses) and len(chosen) < most:
-        first, poses = poses[0], poses[1:]
-        chosen.append(first)
-        off = poses - first
-        away = np.hypot(off[:, 0], off[:, 1]) > ELSEWHERE
-        poses = poses[away | (np.abs(wrap(off[:, 2])) > ELSEWHERE)]
-    return np.array(chosen).reshape(-1, 3)
+    x, y, heading = poses.T[:, :, None] - poses.T[:, None, :]
+    agree = (np.hypot(x, y) <= ELSEWHERE) & (np.abs(wrap(heading)) <= ELSEWHERE)
+    left = np.ones(len(poses), dtype=np.bool_)
+    chosen: list[int] = []
+    while left.any() and len(chosen) < most:
+        chosen.append(int(left.argmax()))
+        left &= ~agree[:, chosen[-1]]
+    return poses[chosen]
