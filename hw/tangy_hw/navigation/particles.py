@@ -60,13 +60,6 @@ def around(
     return drawn
 
 
-def anywhere(points: Floats, resolution: float, count: int, rng: Generator) -> Floats:
-    """Draw particles evenly over cells (centres `points`, (n, 2), in m), with any heading."""
-    chosen = points[rng.integers(len(points), size=count)]
-    chosen = chosen + rng.uniform(-resolution / 2, resolution / 2, (count, 2))
-    return np.column_stack((chosen, rng.uniform(-pi, pi, count)))
-
-
 def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
     cells = np.floor(particles / (width, width, angle)).astype(np.int64)
     cells -= cells.min(axis=0)
