@@ -38,6 +38,8 @@ class SwitchingOn(Generic[Opened]):
         self._stepped = stepped
         self._cancellation = Cancellation()
         self._opened = ExitStack()
+        self.failure = ""
+        """Why it did not come on, for people to read; empty: it is on, or was cancelled."""
 
     def open(self) -> Opened:
         """Switch the robot on, which takes seconds.

@@ -16,6 +16,9 @@ STARTING = "Its devices are being started. It stands still until the game begins
 STARTING_AGAIN = "Its devices are being started again. It stands still until the game goes on."
 LEAVES_OFF, KEEPS_GAME = "leave it off", "leave it off, and keep the game for later"
 GAME_KEPT = "The game is kept: begin a live game to go on with it."
+TRY_AGAIN = "Switch Tangy on again, and go on with the game?"
+KEEPS_IF_OFF = "If you leave it off, the game is kept: begin a live game to go on with it."
+STOPPED_MEANWHILE = "You stopped it. After you switch it on, it stands until you let it go on."
 READY, NOW = "Ready: {}.", "Starting now: {} ..."
 PARTS = {
     "bench": "simulated devices and people",

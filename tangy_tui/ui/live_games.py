@@ -10,7 +10,15 @@ from textual.constants import ESCAPE_DELAY
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE
-from tangy_tui.text.live_games import GAME_KEPT, SWITCH_ON_DETAIL, parts_lines, switch_on_words
+from tangy_tui.text.live_games import (
+    GAME_KEPT,
+    KEEPS_IF_OFF,
+    STOPPED_MEANWHILE,
+    SWITCH_ON_DETAIL,
+    TRY_AGAIN,
+    parts_lines,
+    switch_on_words,
+)
 from tangy_tui.ui.interruption import ask_about_interrupted
 
 if TYPE_CHECKING:
@@ -116,7 +124,11 @@ async def _play(
         if set_up:
             world = await _set_up(program, setup, robot)
         else:
-            world = await _switch_on(program, robot, again=before is not None)
+            world = await _switch_on(program, robot, before)
+            while world is None and before is not None and await _again(program, robot, before):
+                await asyncio.to_thread(robot.close)  # it may have come on all the same
+                robot = SwitchingOn(opening)
+                world = await _switch_on(program, robot, before)
         if world is None:
             return None
         from tangy_tui.app.joining import Admission, carry_over
@@ -173,15 +185,32 @@ async def _set_up(
     return setup.world if begins else None
 
 
+async def _again(program: Program, robot: SwitchingOn[LiveWorld], before: LiveScreen) -> bool:
+    """Ask whether to switch a robot on once more, for a game that is kept otherwise.
+
+    Staff who left it off are not asked.
+    """
+    from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+    from tangy_tui.ui.dialogs.message import MessageDialog
+
+    if not robot.failure and not before.control.stopped:
+        await program.push_screen_wait(MessageDialog(GAME_KEPT, title="Not yet"))
+        return False
+    why = " ".join([robot.failure or STOPPED_MEANWHILE, KEEPS_IF_OFF])
+    dialog = ConfirmDialog(TRY_AGAIN, why, yes="switch it on", no="leave it off")
+    return await program.push_screen_wait(dialog)
+
+
 async def _switch_on(
-    program: Program, robot: SwitchingOn[LiveWorld], *, again: bool = False
+    program: Program, robot: SwitchingOn[LiveWorld], before: LiveScreen | None = None
 ) -> LiveWorld | None:
     """Switch a robot on behind a dialog; None if that was cancelled, or failed.
 
-    A robot that came on just as it was cancelled is switched off again. `again` says that a game
-    goes on then, which is kept otherwise.
+    A robot that came on just as it was cancelled is switched off again. `before` is the screen of a
+    game that a person has joined: a STOP holds for it, and why the robot is off is left to tell.
     """
     from tangy_hw.cancellation import Cancelled
+    from tangy_tui.app.game_commands import StopRobot
     from tangy_tui.ui.dialogs.message import MessageDialog
     from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 
@@ -190,14 +219,14 @@ async def _switch_on(
         profile.title,
         robot.cancel,
         lambda: parts_lines(robot.parts, robot.done, profile),
-        again=again,
+        again=before is not None,
     )
+    robot.failure = ""
     program.push_screen(dialog)
     await dialog.shown()
     await asyncio.sleep(TYPED_AHEAD_SECONDS)
     opening = asyncio.ensure_future(asyncio.to_thread(robot.open))
     opening.add_done_callback(_heard)
-    told = [GAME_KEPT] if again else []
     try:
         world = await asyncio.shield(opening)
         if not dialog.called_off:
@@ -205,14 +234,16 @@ async def _switch_on(
     except Cancelled:
         pass
     except TangyError as error:
-        told.insert(0, str(error))
+        robot.failure = str(error)
     except asyncio.CancelledError:  # the program is ending
         robot.cancel()
         raise
     finally:
         dialog.over()
-    if told:
-        await program.push_screen_wait(MessageDialog(" ".join(told), title="Not yet"))
+        if before is not None and dialog.stopped:
+            before.control.apply(StopRobot())
+    if robot.failure and before is None:
+        await program.push_screen_wait(MessageDialog(robot.failure, title="Not yet"))
     return None
 
 

@@ -14,8 +14,10 @@ from tangy_profiles.game_records import GameEnding
 from tangy_tui.app.game_commands import Joins, SetAutonomy, StopRobot
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.live import LiveScreen
 from tests.pilot.conftest import Run, StillClock
 from tests.pilot.live_games import HeldLink, live, live_world, paused_after
 from tests.support.waiting import until_shown
@@ -96,10 +98,42 @@ async def test_a_game_is_kept_if_the_robot_does_not_come_on_again(
     async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
         await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
         await paused_after(pilot, robot.links[0], 2)
-        robot.broken = True
+        first, robot.broken = live(pilot), True
         await pilot.press(":", *"add Berta", "enter")
         await until_shown(pilot, lambda: "does not answer" in pilot.text())
-        assert "The game is kept" in pilot.text()
+        assert "the game is kept" in pilot.text()
+        robot.broken = False
+        called = tuple(first.world.called)
+        await pilot.press("y")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
+        assert live(pilot) is not first and robot.groups[-1][-1] == "user5"
+        await until_shown(pilot, lambda: bool(live(pilot).world.called))
+        assert tuple(live(pilot).world.called) == called
+
+
+@pytest.mark.slow
+async def test_a_stop_that_leaves_the_robot_off_holds_when_it_is_switched_on_again(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    robot = Robot(workspace)
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        first = live(pilot)
+        await pilot.press(":", *"add Berta", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, SwitchingOnDialog))
+        await pilot.press("ctrl+x")
+        await until_shown(pilot, lambda: "You stopped it" in pilot.text())
+        await pilot.press("y")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
+        second = live(pilot)
+        assert second is not first
+        await until_shown(pilot, lambda: second.control.phase == "stopped")
+        assert not second.world.link.state.going
 
 
 @pytest.mark.slow

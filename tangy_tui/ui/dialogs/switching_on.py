@@ -51,6 +51,8 @@ class SwitchingOnDialog(Dialog[None]):
         self._told: Sequence[str] = ()
         self.called_off = False
         """Whether the start was cancelled."""
+        self.stopped = False
+        """Whether a STOP cancelled it."""
         self._shown = asyncio.Event()
 
     def compose(self) -> ComposeResult:
@@ -89,6 +91,7 @@ class SwitchingOnDialog(Dialog[None]):
 
     def on_stop(self, message: Stop) -> None:
         """Cancel the start on STOP."""
+        self.stopped = True
         self.action_call_off()
 
     def _text(self) -> Content:
