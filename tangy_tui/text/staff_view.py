@@ -24,7 +24,7 @@ STEP_SECONDS = 10
 """Waits of less than a minute are told in steps of so many s."""
 
 NOTHING_CALLED = "nothing called yet"
-PAUSED, STOPPED = "Paused.", "Tangy was stopped."
+PAUSED = "Paused."
 OVER = "The game is over. Its report: tangy report."
 
 
@@ -115,6 +115,11 @@ def next_words(
     notes = "; ".join(filter(None, (whom, "" if clause else why)))
     because = f", because {why}" if clause else ""
     return f"Next: {done}{f' ({notes})' if notes else ''}{because}."
+
+
+def stopped_words(by: str) -> str:
+    """Tell that the robot is stopped, and by which onlooker; by="": staff at this console."""
+    return f"{by} stopped Tangy." if by else "Tangy was stopped."
 
 
 def said_words(said: str) -> str:

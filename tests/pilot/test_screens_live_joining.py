@@ -153,6 +153,7 @@ async def test_a_stop_meanwhile_holds(run: Run, workspace: Workspace, policy: Po
         second = live(pilot)
         await until_shown(pilot, lambda: "back where it was" in pilot.text())
         assert second is not first and second.control.phase == "stopped"
+        await until_shown(pilot, lambda: "Nina stopped Tangy." in pilot.text())
         assert tuple(second.world.called) == tuple(first.world.called)
         assert robot.links[1].held_by and not robot.links[1].done
         await pilot.press("p")

@@ -56,7 +56,7 @@ def _next(shown: ViewSource) -> str:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
         return f"{text.OVER} {said}".rstrip() if control.supervision.games else ""
     if control.stopped:
-        return text.STOPPED
+        return text.stopped_words(control.stopped_by)
     found = next_step(world, control.supervision.policy)
     planned = as_planned(world)
     calls_first = 0 if planned is None else planned.tracker.calls_first
