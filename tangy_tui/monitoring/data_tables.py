@@ -172,14 +172,15 @@ def _staff(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
                     **when, "kind": "note", "fault": None, "what": did, "person": person or None,
                     "detail": detail or None, "by_person": bool(by),
                 }  # fmt: skip
-            case Unclear():
+            case Unclear(person):
                 yield {
                     **when, "kind": "unclear", "fault": None, "what": "answer not clear",
-                    "by_person": False,
+                    "person": person or None, "detail": None, "by_person": False,
                 }  # fmt: skip
             case Moved(fault=fault, move=move) if move.by:
                 yield {
-                    **when, "kind": "move", "fault": fault.id, "what": move.kind, "by_person": True,
+                    **when, "kind": "move", "fault": fault.id, "what": move.kind, "person": None,
+                    "detail": None, "by_person": True,
                 }  # fmt: skip
 
 

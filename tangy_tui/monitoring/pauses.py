@@ -66,7 +66,7 @@ class PauseClock:
         return PauseTotal(self._count, self._seconds)
 
     def _end(self, at: float) -> None:
-        if self._since is not None:
+        if self._since is not None and at > self._since:  # not a stop that ends the game
             self._count += 1
-            self._seconds += max(0.0, at - self._since)
+            self._seconds += at - self._since
         self._since, self._by = None, "staff"

@@ -8,10 +8,12 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
-from tangy_profiles.game_records import GameChange
+from tangy_profiles.game_records import GameChange, RecoveryEvent
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_tui.app.game_commands import ComesIn, GoesAway
 from tangy_tui.app.scripted_staff import scripted_controller
@@ -19,6 +21,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.attention import Attention, attention_in, calls_in
 from tangy_tui.monitoring.data_tables import HEAD, TABLES
+from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.house import (
     by_month,
@@ -27,7 +30,7 @@ from tangy_tui.monitoring.house import (
     people_over_time,
     read_log,
 )
-from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
+from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted, Unclear
 from tangy_tui.pages.house import house_page, person_page
 from tangy_tui.text.report import attention_lines, care_lines
 from tangy_tui.text.staff_actions import action_line, action_words
@@ -277,3 +280,22 @@ def test_the_pages_name_their_world_and_the_excluded_games(played: Workspace) ->
     assert "simulated" in person_page(rosa, [log], "simulated", [])
     (month,) = by_month(of_world([log], "simulated"))
     assert len(month.games) == 2
+
+
+def test_the_staff_table_has_all_columns_for_every_action(played: Workspace) -> None:
+    log = read_log(played.store, {}, {"bingo": played.activity})
+    fault = cast(Fault, SimpleNamespace(id="f1"))
+    whats = (
+        Noted("paused", "Ada"),
+        Unclear("user2", asked_again=True),
+        Moved(fault, RecoveryEvent("cleared", 3.0, by="Ada")),
+    )
+    moments = [Moment(1.0, 1, "2026-03-02T09:00:00+00:00", what) for what in whats]
+    table = next(one for one in TABLES if one.name == "staff")
+    rows = list(table.of([replace(log, replays=(replace(log.replays[0], moments=moments),))]))
+    assert [(row["kind"], row["person"]) for row in rows] == [
+        ("note", None),
+        ("unclear", "user2"),
+        ("move", None),
+    ]
+    assert all(set(row) == set(table.columns) for row in rows)
