@@ -1,9 +1,10 @@
 """A person who refuses every request: Tangy's reports of them, and the outcome of the game.
 
-Run by hand: `python -m tests.bench.refusals [--games N] [--seed N] [--bench] [--keep DIR]`. One
-person refuses from about the eighth step on, in the simulated room or with --bench on the bench,
-with or without a camera for cards. The bench counts whether Tangy names the refusal, how often it
-asks in vain, and how long the others wait: from the arrival at that person until the robot leaves.
+Run by hand: `python -m tests.bench.refusals [--games N] [--seed N] [--bench] [--unseen] [--keep
+DIR]`. One person refuses from about the eighth step on, in the simulated room or with --bench on
+the bench. With --unseen a card is out of the camera's view as well. The bench counts whether
+Tangy names the refusal, how often it asks in vain, and how long the others wait: from the arrival
+at that person until the robot leaves.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.scoring import share_interval
 from tests.bench.fault_latency import teach
 from tests.bench.fault_pairs import ANEW, STEPS, PairGame, on_benches, play
-from tests.support.games import in_vain
+from tests.support.games import vain_requests
+
+UNSEEN = "card-out-of-sight"
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,13 @@ def refusing(one: PairGame) -> Refusing | None:
     ]
     mine = [seconds for place, seconds in lasts if place == person]
     people = [place for place, _ in lasts]
-    asked = Counter(visit for visit, _ in in_vain(one.events))
+    vain = vain_requests(one.events)
+    asked = Counter(request.visit for request in vain)
+    asked_each = Counter(request.person for request in vain)
     return Refusing(
         person,
         max(asked.values(), default=0),
-        sum(asked.values()),
+        max(asked_each.values(), default=0),
         len(mine),
         max(len(list(stay)) for place, stay in groupby(people) if place == person),
         max(mine),
@@ -82,11 +87,15 @@ def main() -> None:
     parser.add_argument("--games", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bench", action="store_true")
+    parser.add_argument("--unseen", action="store_true")
     parser.add_argument("--keep", type=Path, default=Path(gettempdir(), "tangy-refusals"))
     given = parser.parse_args()
     chance = Random(f"{given.seed}/refusals")
     games = [
-        PairGame((f"{ANEW}@{chance.randint(*STEPS)}",), chance.randrange(1_000_000))
+        PairGame(
+            (f"{ANEW}@{chance.randint(*STEPS)}", *([UNSEEN] if given.unseen else [])),
+            chance.randrange(1_000_000),
+        )
         for _ in range(given.games)
     ]
     found: list[tuple[PairGame, Refusing | None]] = []
@@ -103,12 +112,13 @@ def main() -> None:
             found.append((one, refusing(one)))
             if given.bench or not one.fine:
                 print(one, found[-1][1], flush=True)
-    could = [one for one, _ in found if one.could_show]
-    named = sum(one.named for one in could)
-    low, high = share_interval(named / len(could), len(could))
+    could = sum(one.could_show for one, _ in found)
+    named = sum(one.named for one, _ in found)
+    low, high = share_interval(named / could, could)
     told = [mine for _, mine in found if mine is not None]
     print(
-        f"{len(found)} games; refused in {len(could)}, named in {named} ({low:.3f} to {high:.3f}); "
+        f"{len(found)} games, {could} faults could show, {named} named ({low:.3f} to {high:.3f}); "
+        f"refusals in {len(told)}; "
         f"at most {max(one.asked_in_visit for one in told)} requests in vain in a visit, "
         f"{max(one.asked_in_game for one in told)} in a game of anybody; at most "
         f"{max(one.in_a_row for one in told)} visit in a row, {max(o.longest for o in told):.0f} s "

@@ -20,7 +20,7 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.supervision import Event
 from tests.monitoring.conftest import Supervise
-from tests.support.games import codes, ended, in_vain, play
+from tests.support.games import codes, ended, play, vain_requests
 
 MOST = 3
 """Requests that a person who refuses hears in a visit."""
@@ -33,7 +33,7 @@ def test_a_visit_has_at_most_three_requests_in_vain(
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     events = play(supervise(kind, seed=seed))
-    visits = Counter(visit for visit, _ in in_vain(events))
+    visits = Counter(one.visit for one in vain_requests(events))
     assert max(visits.values(), default=0) <= MOST
     assert ended(events).stopped is None
 
@@ -44,7 +44,7 @@ def test_a_card_hidden_after_a_request_counts_as_in_vain(
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     events = play(supervise("never-complies@8", "card-out-of-sight~.3", seed=seed))
-    visits = Counter(visit for visit, _ in in_vain(events))
+    visits = Counter(one.visit for one in vain_requests(events))
     assert max(visits.values(), default=0) <= MOST
     assert ended(events).stopped is None
 
@@ -57,7 +57,7 @@ def test_other_faults_do_not_raise_the_limit_of_requests(
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     for seed in range(1, 7):
         events = play(supervise("card-out-of-sight~1", beside, seed=seed))
-        visits = Counter(visit for visit, _ in in_vain(events))
+        visits = Counter(one.visit for one in vain_requests(events))
         assert max(visits.values(), default=0) <= MOST
 
 
@@ -71,7 +71,7 @@ def test_pressing_strategies_are_not_used_after_a_refusal(
     for seed in range(1, 25):
         game = supervise(kind, seed=seed)
         refused: set[int] = set()
-        for visit, strategy in in_vain(play(game)):
+        for visit, _, strategy in vain_requests(play(game)):
             refusals += visit in refused
             pressed += [strategy] if visit in refused else []
             refused.add(visit)
@@ -170,7 +170,7 @@ def test_an_activity_can_lower_the_limits_of_requests(
         activity = replace(game.world.activity, asking=limits)
         game.detector.activity = activity
         events = play(game)
-        assert max(Counter(visit for visit, _ in in_vain(events)).values(), default=0) <= 2
+        assert max(Counter(one.visit for one in vain_requests(events)).values(), default=0) <= 2
         assert max(asked(events, person) for person in game.world.people) <= 3
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from tangy_profiles.state import FRONT
 from tangy_sim.worlds.faulty_world import FaultyWorld
@@ -59,9 +60,17 @@ def ended(events: Sequence[object]) -> GameEnded:
     return next(event for event in events if isinstance(event, GameEnded))
 
 
-def in_vain(events: list[Event]) -> list[tuple[int, str]]:
-    """Return the visit and the strategy of each request that was not followed."""
-    found: list[tuple[int, str]] = []
+class VainRequest(NamedTuple):
+    """A request that was not followed: in which visit, to whom, and how."""
+
+    visit: int
+    person: str
+    strategy: str
+
+
+def vain_requests(events: list[Event]) -> list[VainRequest]:
+    """Return the requests that were not followed, in order."""
+    found: list[VainRequest] = []
     visit = 0
     for event in events:
         if isinstance(event, Acted):
@@ -69,7 +78,7 @@ def in_vain(events: list[Event]) -> list[tuple[int, str]]:
             response = event.outcome.response
             asks = event.action.behaviour.persuades and event.action.behaviour.effect != "none"
             if asks and event.after.place != FRONT and not (response and response.followed):
-                found.append((visit, str(event.action.strategy)))
+                found.append(VainRequest(visit, event.after.place, str(event.action.strategy)))
         elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:
-            found.append((visit, "aloud"))
+            found.append(VainRequest(visit, event.fault.person, "aloud"))
     return found
