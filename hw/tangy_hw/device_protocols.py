@@ -9,6 +9,7 @@ room's frame (see `tangy_profiles.room`) unless stated otherwise.
 from __future__ import annotations
 
 import asyncio
+import inspect
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -285,3 +286,22 @@ class OwnNavigation(Device, Protocol):
     async def cancel(self) -> None:
         """Cancel the goal, and wait a moment for the confirmation; never raises."""
         ...
+
+
+PROTOCOLS: Mapping[str, type] = {
+    "base": Base,
+    "laser": Laser,
+    "stop_button": StopButton,
+    "arms": Arms,
+    "screen": ChestScreen,
+    "voice": Voice,
+    "navigator": OwnNavigation,
+}
+"""The Protocol of each device; all others, such as a battery, implement `Device` only."""
+
+
+def members_of(device: str) -> tuple[str, ...]:
+    """Return the names of the members that the driver of a device must have."""
+    ours = [one for one in PROTOCOLS.get(device, Device).__mro__ if one.__module__ == __name__]
+    names = (name for one in reversed(ours) for name in (*inspect.get_annotations(one), *vars(one)))
+    return tuple(dict.fromkeys(name for name in names if not name.startswith("_")))

@@ -44,6 +44,9 @@ class Radio:
     async def say(self, text):
         self._file.write_text(self._file.read_text() + text)
 
+    async def play(self, sound):
+        pass
+
     async def hush(self):
         pass
 

@@ -5,13 +5,14 @@ Devices on the same link (a rosbridge server) share one connection.
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose
+from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose, members_of
 from tangy_hw.drivers.ros_status import RosDiagnostics
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
@@ -313,9 +314,14 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
     """Create the driver of a device, without starting it.
 
     Raises:
-        DeviceError: there is no such kind, or its settings are invalid.
+        DeviceError: there is no such kind, its settings are invalid, or the driver lacks members of
+            the device's Protocol.
     """
     kind = str(values.get("kind", ""))
+    if device in wiring.robot.devices and wiring.robot.devices[device].looks_at:
+        raise DeviceError(
+            f"drivers.{device}: a camera has no driver; write its source under [[devices]]."
+        )
     drivers = DRIVERS if kind in DRIVERS else known_drivers()
     if kind not in drivers and kind in extensions("drivers"):
         try:
@@ -330,4 +336,13 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
     settings = DriverSettings(device, kind, {k: v for k, v in values.items() if k != "kind"})
     opened = drivers[kind].opens(wiring, settings)
     settings.close()
+    lacks = [name for name in members_of(device) if not _has(opened, name)]
+    if lacks:
+        raise settings.wrong(f"its driver has no {', '.join(lacks)}.")
     return opened
+
+
+def _has(driver: Device, member: str) -> bool:
+    """Return whether a driver has a member, without calling its properties."""
+    missing = object()
+    return inspect.getattr_static(driver, member, missing) is not missing
