@@ -180,7 +180,7 @@ class Patterns:
 
 
 def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRules:
-    """Read the game rules of an activity, all of which are optional.
+    """Read the game rules of an activity; all are optional.
 
     Raises:
         ProfileError: the file has a mistake.

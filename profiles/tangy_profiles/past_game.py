@@ -121,11 +121,11 @@ class PastGame:
         return self.beginning.world or SIMULATED
 
     def joined_by(self, person: str, unread: str, place: int | None = None) -> PastGame:
-        """Return the game with one person more, of whom nothing is known yet.
+        """Return the game with one more person, about whom nothing is known.
 
         Args:
             person: the id.
-            unread: the state of a person of whom nothing is known.
+            unread: the state of a person about whom nothing is known.
             place: the person's place from 0; None: after the others.
         """
         there = self.beginning.people

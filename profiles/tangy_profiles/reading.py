@@ -261,7 +261,7 @@ class Table:
 
 
 def _in_words(error: tomllib.TOMLDecodeError) -> str:
-    """Say what an author can look for where the parser names only what it met."""
+    """Return a hint for the author if the parser names only the text it met."""
     told = str(error)
     for met, words in _MET.items():
         told = re.sub(re.escape(met), words, told, flags=re.IGNORECASE)

@@ -52,7 +52,7 @@ CALLED_OFF_SECONDS = 1.0
 
 @dataclass
 class _Told:
-    """What the reader's thread has received."""
+    """Data that the reader thread has received."""
 
     state: RobotState = field(default_factory=RobotState)
     time: float = 0.0

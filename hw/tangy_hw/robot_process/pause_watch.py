@@ -53,7 +53,7 @@ class PauseWatch:
         self._clock = clock
         self._looked: float | None = None
         self._since = 0.0
-        self._by = ""  # what was late first
+        self._by = ""  # the device that was late first
         self._wanted: dict[str, int] = {}  # fresh readings still required of each device
         self._ages: dict[str, float] = {}
         self._lost: deque[tuple[float, float]] = deque()  # end and duration of recent pauses, in s

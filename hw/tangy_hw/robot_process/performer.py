@@ -65,7 +65,7 @@ class Performer:
         gazes: bool = False,
         sound: Path | None = None,
     ) -> dict[str, bool]:
-        """Speak, show and gesture at once, then play a sound; return what was done.
+        """Speak, show and gesture at once, then play a sound; return the parts done.
 
         Joints are in degrees. Failed parts are skipped: their devices report this. An arm with an
         error prevents gestures, but not turning the head (`gazes`).

@@ -41,7 +41,7 @@ class Phrasing:
         """The conditions of the selectors read so far that have one."""
 
     def conditions(self, section: Section, key: str) -> tuple[FactCondition, ...]:
-        """Parse the conditions of a key, all of which must hold."""
+        """Parse the conditions of a key; all must hold."""
         return self.all_of(section, key, section.texts(key))
 
     def all_of(self, section: Section, key: str, texts: Sequence[str]) -> tuple[FactCondition, ...]:

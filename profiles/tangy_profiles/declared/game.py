@@ -214,7 +214,7 @@ class DeclaredGame:
         return stage, about
 
     def seen(self, at: float | None = None) -> tuple[str, tuple[str, ...]]:
-        """Return what the policy sees: the stage, and the values of its facts.
+        """Return the input of the policy: the stage, and the values of its facts.
 
         `at` is the time for timers, in s of this game (default: now).
         """

@@ -98,7 +98,7 @@ def game_from(
 
 
 def with_player(memory: GameMemory, player: str, seat: int) -> GameMemory:
-    """Return the state of a game with one player more, of whom nothing is known yet.
+    """Return the state of a game with one more player, about whom nothing is known.
 
     Args:
         memory: the state.

@@ -304,7 +304,7 @@ class People:
             self._agenda.at(self.now + 2 * patience - CLEAR, partial(self._turn_down, sitter))
 
     def _does(self, sitter: Sitter, behaviour: Behaviour, heard: HeardLine, vain: bool) -> None:
-        """Carry out a request; in vain if another cell gets the same error."""
+        """Carry out a request; if `vain`, another cell may get the same error."""
         player, before = sitter.player, sitter.player.marked
         judged = self.judged(sitter.id)
         named = heard.cells(player)

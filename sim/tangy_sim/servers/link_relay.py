@@ -114,7 +114,7 @@ class LinkRelays:
             await coming.put((due, read))
 
     async def _send(self, coming: Coming, writer: asyncio.StreamWriter) -> None:
-        """Send what is due.
+        """Send the messages that are due.
 
         Raises:
             OSError: a side has ended the connection.

@@ -88,7 +88,7 @@ def how_sure(shape: Shape, limits: TriangleLimits = USUAL) -> float:
 
 
 def ahead_of_background(image: Image) -> Any:
-    """Return a grey picture (of 255) of how much brighter all is than what is behind it."""
+    """Return a grey picture (0 to 255): how much brighter each pixel is than its background."""
     import cv2
     import numpy as np
 
