@@ -139,6 +139,11 @@ class Phrasebook:
             return None
         return near or (learnt[0] if learnt else None)
 
+    def prepare(self) -> None:
+        """Load the intent model, or train it, before the first text has to wait."""
+        if self._learnt is not None:
+            self._learnt.prepare()
+
     @property
     def learns(self) -> bool:
         """Whether it also uses the intent model."""

@@ -54,6 +54,10 @@ class Paraphrases:
         self._mentions = mentions
         self._to_people = to_people
 
+    def prepare(self) -> None:
+        """Load the model."""
+        self._model()
+
     def talk(self, words: Words) -> float:
         """Return the probability, from 0 to 1, that words ask for nothing."""
         mentioned = self._mentions.find(words)

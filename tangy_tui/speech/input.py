@@ -246,12 +246,12 @@ class SpeechInput:
 
     async def _listen_for(self, recogniser: Recogniser) -> None:
         """Send the current vocabulary to the decoder."""
-        self._renew = False
-        phrasebook = self._phrasebook
+        self._renew, phrasebook = False, self._phrasebook
         lexicon = await asyncio.to_thread(Lexicon, phrasebook, suggest=lambda word: "")
         if self._closed:
             return
         await recogniser.start(wanted(phrasebook, self._settings, lexicon.heard()))
+        await asyncio.to_thread(phrasebook.prepare)  # not when the first words wait for it
         for note in (one for one in not_heard(lexicon) if one not in self._noticed):
             self._noticed.add(note)
             self.tell(note)

@@ -6,13 +6,16 @@ import asyncio
 from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
 from pathlib import Path
+from threading import get_ident
+from typing import cast
 
 import pytest
 
 from tangy_hw.audio.wav import RATE, SoundError
-from tangy_profiles.activity import load_activity
+from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.intent_model import IntentModel
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import input as room
 from tangy_tui.speech.hearing_notes import HearingNote
@@ -99,6 +102,20 @@ async def enter(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Enter]:
         assert each.state in ("over", "starting")
     assert all(decoder.closed for decoder in FakeRecogniser.made)
     assert asyncio.all_tasks() == {asyncio.current_task()}
+
+
+class TestIntentModel:
+    async def test_it_is_loaded_beside_the_screen_when_the_ears_open(self, enter: Enter) -> None:
+        loaded: list[int] = []
+
+        def load(activity: Activity) -> IntentModel:
+            loaded.append(get_ident())
+            return cast(IntentModel, None)
+
+        here = enter()
+        here.ears.understand_by(Phrasebook(load_activity("bingo"), load_people(4), load))
+        await here.ready()
+        assert len(loaded) == 1 and loaded[0] != get_ident()
 
 
 class TestPushToTalk:
@@ -307,7 +324,7 @@ class TestOtherPhrases:
     async def test_a_phrasebook_that_also_learns_renews_the_decoder(self, enter: Enter) -> None:
         here = await enter().ready()
         learns = Phrasebook(
-            load_activity("bingo"), load_people(4), lambda _: pytest.fail("read for the sounds")
+            load_activity("bingo"), load_people(4), lambda _: cast(IntentModel, None)
         )
         here.ears.understand_by(learns)
         await here.say(sound("c"))
