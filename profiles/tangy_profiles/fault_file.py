@@ -175,7 +175,7 @@ def _never(condition: Condition, devices: Mapping[str, DeviceProfile]) -> str:
         return "" if known else f"is no state; {nearest(str(condition.value).upper(), STATES)}"
     measure = device.facts[fact]
     if condition.test not in ("is", "not") and measure.high is None:
-        return "compares what is no number: use is or not."
+        return "compares something that is not a number: use is or not."
     return measure.wrong(condition.value)
 
 

@@ -115,5 +115,7 @@ def _meant(word: str) -> tuple[str, Any]:
             plain(f"There is no method {word!r}: {nearest(word, known_words)}")
         ) from None
     if not LEAST_KEPT <= share <= 1 or math.isnan(share):
-        raise ProfileError(f"What is kept must be a share from {LEAST_KEPT:g} to 1, not {share:g}.")
+        raise ProfileError(
+            f"The share that is kept must be from {LEAST_KEPT:g} to 1, not {share:g}."
+        )
     return "forgetting", share

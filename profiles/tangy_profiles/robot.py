@@ -175,7 +175,9 @@ def load_robot(name: str = USUAL_ROBOT) -> Robot:
     shipped = shipped_robots()
     if name not in shipped and not name.endswith(".toml"):
         if Path(name).is_file():
-            raise ProfileError(plain(f"{name} is no robot: a robot's file ends in .toml."))
+            raise ProfileError(
+                plain(f"{name} is not a robot: the name of a robot's file ends in .toml.")
+            )
         raise ProfileError(f"There is no robot {name!r}: {nearest(name, shipped)}")
     path = shipped.get(name) or Path(name)
     return read_robot(read_toml(path), path)

@@ -154,5 +154,5 @@ class TestLogs:
 
     def test_a_scan_of_one_reading_is_refused_in_a_sentence(self, tmp_path: Path) -> None:
         (tmp_path / "log").write_text("FLASER 1 5 0 0 0 0 0 0 0 x 0\n")
-        with pytest.raises(LogError, match="line 1: '1' is no number of readings"):
+        with pytest.raises(LogError, match="line 1: '1' is not a number of readings"):
             read_log(tmp_path / "log")

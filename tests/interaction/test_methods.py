@@ -306,8 +306,8 @@ def test_a_method_is_read_from_words_in_any_order(words: str, chosen: Persuasion
     [
         ("bayes", "There is no method 'bayes': did you mean 'bayes-ucb'?"),
         ("thompson bayes-ucb", "'bayes-ucb' says again what another word has said."),
-        ("0.2", "What is kept must be a share from 0.5 to 1, not 0.2."),
-        ("nan", "What is kept must be a share from 0.5 to 1, not nan."),
+        ("0.2", "The share that is kept must be from 0.5 to 1, not 0.2."),
+        ("nan", "The share that is kept must be from 0.5 to 1, not nan."),
         ("day", "'day' needs the share that is kept, for example 0.98."),
     ],
 )

@@ -148,7 +148,7 @@ def test_doctor_lists_extensions_and_their_problems(installed: Path, tmp_path: P
     assert found["method of persuasion turns"] == well
     for part, words in (
         ("driver scip", "this name is taken; ours is used."),
-        ("driver static", "is no DriverKind"),
+        ("driver static", "is not a DriverKind"),
         ("activity keno", "has no keno.toml"),
         ("method of persuasion half", "has no forgets"),
         ("method of persuasion gone", "cannot be loaded"),
@@ -168,7 +168,7 @@ def test_a_driver_of_another_package_is_opened(installed: Path, tmp_path: Path) 
     mine.write_text(f'{body}\n[drivers]\nvoice = {{ kind = "static" }}\n')
     done = tangy(installed, "doctor", "--robot", mine, "--json", "--data", tmp_path)
     (voice,) = (one for one in json.loads(done.stdout) if one["part"] == "Tangy's voice")
-    assert not voice["ok"] and "is no DriverKind" in voice["text"]
+    assert not voice["ok"] and "is not a DriverKind" in voice["text"]
 
 
 def test_an_activity_of_another_package_is_found_by_name(installed: Path, tmp_path: Path) -> None:

@@ -63,7 +63,10 @@ def test_a_robot_file_must_be_toml(
     for words in (("live", "--robot", notes), ("--robot", notes, "live")):
         done = tangy(*words)
         assert done.returncode == 2
-        assert done.stderr == f"tangy: {notes} is no robot: a robot's file ends in .toml.\n"
+        assert (
+            done.stderr
+            == f"tangy: {notes} is not a robot: the name of a robot's file ends in .toml.\n"
+        )
 
 
 def test_contradicting_microphone_options_are_refused(

@@ -86,7 +86,7 @@ class DriverSettings:
             DeviceError: there are some.
         """
         for key in self._values:
-            raise self.wrong(f"{key} is no setting of it.")
+            raise self.wrong(f"there is no setting '{key}'.")
 
     def wrong(self, problem: str) -> DeviceError:
         """Return an error about the driver's settings."""
@@ -296,7 +296,7 @@ def driver_kind(extension: Extension) -> DriverKind:
     """
     kind = extension.load()
     if not isinstance(kind, DriverKind):
-        raise ProfileError(plain(f"{extension}: {extension.value} is no DriverKind."))
+        raise ProfileError(plain(f"{extension}: {extension.value} is not a DriverKind."))
     return kind
 
 

@@ -336,10 +336,10 @@ class Rosbridge:
         try:
             message = json.loads(text)
             if not isinstance(message, dict):
-                raise ValueError("it is no object")
+                raise ValueError("it is not an object")
             whole = self._fragments.take(message) if message.get("op") == "fragment" else None
         except (ValueError, RecursionError, KeyError, TypeError) as error:
-            self.tell_once(f"{self.url} sends what is no rosbridge message: {error}")
+            self.tell_once(f"{self.url} sends something that is not a rosbridge message: {error}")
             return
         self._heard = self.clock()
         self._arrivals.count(self._heard)

@@ -77,7 +77,7 @@ def decode(written: bytes) -> int:
     value = 0
     for sign in written:
         if not BASE <= sign < BASE + 64:
-            raise ScipError("a character that is no number")
+            raise ScipError("a character that is not a digit")
         value = value << 6 | sign - BASE
     return value
 
@@ -92,7 +92,7 @@ def decode_all(written: bytes, length: int) -> NDArray[np.int64]:
         raise ScipError("a distance that is cut off")
     bits = np.frombuffer(written, np.uint8).astype(np.int64) - BASE
     if bits.size and not (bits.min() >= 0 and bits.max() < 64):
-        raise ScipError("a character that is no number")
+        raise ScipError("a character that is not a digit")
     weights = 64 ** np.arange(length - 1, -1, -1, dtype=np.int64)
     numbers: NDArray[np.int64] = bits.reshape(-1, length) @ weights
     return numbers
@@ -153,7 +153,7 @@ def parse(reply: bytes) -> ScipReply:
     try:
         return ScipReply(echo, status.decode("ascii"), tuple(lines[1:]))
     except UnicodeDecodeError:
-        raise ScipError("a status that is no text") from None
+        raise ScipError("a status that is not text") from None
 
 
 def joined(lines: Iterable[bytes]) -> bytes:

@@ -83,7 +83,7 @@ def read_log(path: Path) -> list[LoggedScan]:
     except EOFError:
         raise LogError(f"{name}: breaks off.") from None
     except UnicodeDecodeError:
-        raise LogError(f"{name}: is no text, so it is no log of scans.") from None
+        raise LogError(f"{name}: is not text, so it is not a log of scans.") from None
     except ValueError as error:
         raise LogError(plain(f"{name}, line {number}: {error}")) from None
     if not found:
@@ -123,7 +123,7 @@ def _numbers(words: Sequence[str], count: int) -> list[float]:
 
 def _count(word: str) -> int:
     if not word.isdigit() or not 1 < int(word) <= BEAMS:
-        raise ValueError(f"{word[:20]!r} is no number of readings.")
+        raise ValueError(f"{word[:20]!r} is not a number of readings.")
     return int(word)
 
 

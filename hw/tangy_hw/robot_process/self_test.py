@@ -96,7 +96,7 @@ async def try_robot(
     driven = {device for driver in known_drivers().values() for device in driver.devices}
     for name in driven - {"navigator"}:  # Tangy's own navigator replaces a missing one
         if name in robot.devices and name not in found:
-            what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
+            what = f"it has no driver: name one under [drivers] in {robot.file.name}."
             found[name] = SelfTestResult(name, False, what, absent=True)
     return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
             if name in found]  # fmt: skip

@@ -54,7 +54,7 @@ def requests_named(robot: Robot) -> tuple[str, Corners]:
     }
     for key in given:
         if key != "at" and (key, driver.kind) != ("table", "signs"):
-            raise RequestError(plain(f"{where}: {key} is no setting of it."))
+            raise RequestError(plain(f"{where}: there is no setting '{key}'."))
     at, table = given.get("at", ""), given.get("table", "")
     if not at and driver.kind != "buttons":
         raise RequestError(f"{where}: at is missing.")
