@@ -44,6 +44,16 @@ class TestParticles:
                 assert after[:2] == pytest.approx(there[:2], abs=1e-9)
             assert abs(wrap(float(after[2]) - there.heading)) < 1e-9
 
+    def test_the_likeliest_cluster_is_the_same_on_a_map_of_any_size(self) -> None:
+        rng = np.random.default_rng(5)
+        one, other = (around(Pose(x, 1, 3), (0.1, 0.1, 0.1), 40, rng) for x in (1, 8))
+        weights = np.repeat([0.4, 0.6, 0.0], [40, 40, 1])
+        found = [
+            likeliest(np.vstack((one, other, [(far, far, 0)])), weights) for far in (9.0, 900.0)
+        ]
+        assert found[0][0] == found[1][0]
+        assert found[0][0].x == pytest.approx(8, abs=0.1)
+
     @pytest.mark.parametrize("step", [Pose(2.0, 0, 0), Pose(0, 0, 2.0)])
     def test_one_long_step_adds_no_more_uncertainty_than_its_short_steps(self, step: Pose) -> None:
         rng = np.random.default_rng(2)

@@ -83,7 +83,7 @@ def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> 
         return particles[:0]
     at = (np.arange(count) + rng.random()) / count
     chosen = np.searchsorted(np.cumsum(weights), at)
-    return particles[np.minimum(chosen, len(particles) - 1)]
+    return particles.take(np.minimum(chosen, len(particles) - 1), axis=0)
 
 
 def mean(particles: Floats, weights: Floats) -> Pose:
@@ -109,8 +109,8 @@ def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
     inside = bins == np.argmax(np.bincount(bins, weights))
     guess = mean(particles[inside], weights[inside])
     for _ in range(2):
-        inside = near(particles, guess)
-        if not inside.any():
+        before, inside = inside, near(particles, guess)
+        if not inside.any() or np.array_equal(before, inside):
             break
         guess = mean(particles[inside], weights[inside])
     offs = particles[inside] - np.asarray(guess)

@@ -99,8 +99,11 @@ def nudged(
 ) -> tuple[Floats, Floats]:
     """Return the best of random poses around each of the poses (n, 3), or itself; with scores."""
     deviations = nudges.metres, nudges.metres, nudges.radians
-    tried = poses[:, None] + rng.standard_normal((len(poses), nudges.each, 3)) * deviations
-    tried = np.concatenate((poses[:, None], tried), axis=1)
+    tried = np.empty((len(poses), nudges.each + 1, 3))
+    tried[:, 0] = poses
+    offs = rng.standard_normal((len(poses), nudges.each, 3))
+    offs *= deviations
+    np.add(poses[:, None], offs, out=tried[:, 1:])
     fits = field.scores(tried.reshape(-1, 3), points).reshape(len(poses), nudges.each + 1)
     rows, best = np.arange(len(poses)), fits.argmax(axis=1)
     chosen = tried[rows, best]
@@ -112,4 +115,4 @@ def _best(poses: Floats, scores: Floats, count: int) -> Floats:
     """Return the `count` poses with the highest scores."""
     if count >= len(poses):
         return poses
-    return np.asarray(poses[np.argpartition(-scores, count)[:count]])
+    return poses.take(np.argpartition(-scores, count)[:count], axis=0)
