@@ -53,7 +53,10 @@ def test_the_path_of_a_film_is_relative_to_the_file(tmp_path: Path) -> None:
         ('{ kind = "mqt", at = "mqtt://house/asks" }', "'mqt' tells no requests"),
         ('{ kind = "mqtt" }', "(mqtt): at is missing"),
         ('{ kind = "mqtt", at = "house/asks" }', "(mqtt): at = 'house/asks' must be"),
-        ('{ kind = "mqtt", at = "mqtt://a/b", table = "1" }', "(mqtt): table is no setting"),
+        (
+            '{ kind = "mqtt", at = "mqtt://a/b", table = "1" }',
+            "(mqtt): there is no setting 'table'",
+        ),
         ('{ kind = "buttons", baud = 9600 }', "(buttons): there is no setting 'baud'"),
         ('{ kind = "signs", at = "0", table = "1,2,3" }', "table must be eight numbers"),
     ],
