@@ -114,6 +114,8 @@ class PastGame:
 
     acted: float = 0.0
     """The time played at staff's last logged action, in s."""
+    asked_for: tuple[str, ...] = ()
+    """For whom staff asked for help so late that no step shows it, in order."""
 
     @property
     def world(self) -> GameWorld:
@@ -291,18 +293,20 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
     run = _run(games)
     steps: dict[str, list[GameStep]] = {event.record.game: [] for event in run}
     at = newest.at
+    last = list[Event[GameStep]]()  # those of the newest game
     for event in store.events(GameStep, after=run[0].seq):
         if event.record.game in steps:
             steps[event.record.game].append(event.record)
             at = event.at
+            if event.record.game == game:
+                last.append(event)
     if not steps[game]:
         return None
     *earlier, own = (tuple(steps[event.record.game]) for event in run)
-    notes = [
-        note.record
-        for note in store.events(StaffAction, after=newest.seq)
-        if note.record.game == game
+    acts = [
+        note for note in store.events(StaffAction, after=newest.seq) if note.record.game == game
     ]
+    notes = [note.record for note in acts]
     taken = tuple(note.taken_back for note in notes if note.taken_back)
     acted = max((note.seconds or 0.0 for note in notes), default=0.0)
     changes = tuple(
@@ -320,7 +324,24 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         began,
         changes,
         acted=acted,
+        asked_for=_asked_for(acts, last),
     )
+
+
+def _asked_for(
+    acts: Sequence[Event[StaffAction]], steps: Sequence[Event[GameStep]]
+) -> tuple[str, ...]:
+    """Return for whom staff have asked since, whom no step shows asking, and nobody visited."""
+    asked: dict[str, None] = {}
+    for event in sorted((*acts, *steps), key=lambda event: event.seq):
+        match event.record:
+            case StaffAction(did="asked for", person=person):
+                asked[person] = None
+            case GameStep() as step:
+                shown = () if step.after is None else step.after.users
+                for one in (step.target, *(user.id for user in shown if user.request == "AR")):
+                    asked.pop(one or "", None)
+    return tuple(asked)
 
 
 def _run(games: list[Event[GameBeginning]]) -> list[Event[GameBeginning]]:

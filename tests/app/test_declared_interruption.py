@@ -157,6 +157,15 @@ def test_a_request_survives_a_kill_without_a_sign() -> None:
     assert [u.id for u in resumed.observe().users if u.request == "AR"] == ["user3"]
 
 
+def test_a_request_of_staff_after_the_last_step_survives() -> None:
+    world = live("trivia")
+    world.begin()
+    past = past_of("trivia", play(world, 3))
+    resumed = live("trivia")
+    resumed.resume(replace(past, asked_for=("user2",)))
+    assert resumed.game.queue == ["user2"]
+
+
 def test_a_log_without_facts_or_of_another_activity_is_not_resumed() -> None:
     world = live("trivia")
     world.begin()

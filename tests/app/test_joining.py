@@ -237,6 +237,23 @@ def admission(game: LiveGame) -> Admission:
     return game.control.admission
 
 
+def test_a_person_for_whom_staff_asked_after_the_last_step_asks_after_a_crash(taught: Path) -> None:
+    workspace = Workspace(taught)
+    game = LiveGame(workspace)
+    game.play(4)
+    game.control.apply(AskFor("user2"))
+    game.control.apply(AskFor("user4"))
+    game.control.apply(GoesAway("user4"))
+    workspace.close()  # and kill -9
+
+    workspace = Workspace(taught)
+    past = find_interrupted(workspace, LIVE)
+    assert past is not None and past.asked_for == ("user2", "user4")
+    again = LiveGame(workspace, take_up(workspace, past).past)
+    assert again.world.scene().requests == ("user2",)
+    workspace.close()
+
+
 def test_a_guest_joins_for_today(taught: Path) -> None:
     workspace = Workspace(taught)
     game = LiveGame(workspace)

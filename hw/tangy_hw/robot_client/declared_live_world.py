@@ -104,8 +104,9 @@ class DeclaredLiveWorld(LiveWorld):
         for change in past.since_step:
             self.change(change)
         self._started = self.link.time - game.now
-        for person in game.queue:
-            self.requests.ask_for(person)
+        for person in (*game.queue, *past.asked_for):
+            if person not in self.away:
+                self.requests.ask_for(person)
         self.over = False
         self.commands.settle()
         self.commands.await_tablets()

@@ -124,7 +124,8 @@ class LiveWorld(LivePlan):
         for _ in range(past.beginning.number):
             self._begin()  # each game of the run has its own order
         past.follow(self.tracker, self.change)
-        self.requests.resume(self.tracker.queue)
+        late = [one for one in past.asked_for if one not in self.away]
+        self.requests.resume([*self.tracker.queue, *late])
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
