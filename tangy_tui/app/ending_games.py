@@ -35,6 +35,7 @@ class EndingGames:
 
     joined = False
     """Whether the game was interrupted because a person joined, and is to be resumed with them."""
+    _admitted = False
     goes_on = False
     """Whether a resumed game continues at once, rather than when staff say so.
 
@@ -84,15 +85,24 @@ class EndingGames:
         """Send the robot to the front, let a person in, and interrupt the game."""
         if self.admission is None:
             return [StaffNote("nobody joins")]
+        if self.joined and self._admitted:
+            return [StaffNote("joining")]
         if refused := self.refusal() or self.admission.refusal(command):
             return [refused]
-        if not self.robot.go_to_front():
+        if not self.joined and not self.robot.go_to_front():
             return [StaffNote("not at front")]
         joins = self.admission.admit(command)
         self.note("came", person=joins.about)
+        if self.joined:  # the robot is set up once, for all who have come
+            return [joins]
         self.supervision.interrupt()
         self.joined, self.goes_on, self.going = True, self.going, True
         return [joins]
+
+    def admit_no_more(self) -> None:
+        """Admit nobody else: the robot is being set up for those who have joined."""
+        with self._turn:
+            self._admitted = True
 
     def end_joined(self, reason: str) -> None:
         """End a game that is interrupted for a new person, if staff do not go on with it.

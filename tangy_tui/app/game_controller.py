@@ -247,7 +247,8 @@ class GameController(PausingGames):
         self.changed()
 
     def _dispatch(self, command: GameCommand) -> list[Result]:
-        if self.supervision.over and not isinstance(command, WITHOUT_GAME):
+        too = self.joined and isinstance(command, Joins)
+        if self.supervision.over and not too and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("joining" if self.joined else "no game")]
         if isinstance(command, PlanCommand):
             return self.plan.do(command)

@@ -90,7 +90,8 @@ class Admission:
         Raises:
             TangyError: the name cannot be given, or the log is full.
         """
-        workspace, there = self._workspace, self._world.people
+        workspace = self._workspace
+        there = [person.id for person in workspace.people]
         id = let_join(workspace, joins.name.strip(), guest=joins.guest)
         place = joins.seat - 1 if joins.seat else workspace.room.next_place(len(there))
         workspace.gather((*there[:place], id, *there[place:]))

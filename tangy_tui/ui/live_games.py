@@ -87,6 +87,7 @@ async def play_live(
         setup=setup, set_up=set_up,
     )  # fmt: skip
     while played is not None and played.control.joined:
+        played.control.admit_no_more()
         past = resume_joined(workspace, played.world.played_in)
         policy, left = played.control.supervision.policy, played.games - played.tally.games
         before = played

@@ -49,9 +49,13 @@ class LiveLines:
     def keeping(self, command: str) -> Iterator[None]:
         """Tell how to go on with a joined game if the robot does not come on again.
 
+        Nobody else joins meanwhile.
+
         Args:
             command: the command that resumes it.
         """
+        if self._control is not None:
+            self._control.admit_no_more()
         try:
             yield
         except BaseException:

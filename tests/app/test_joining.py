@@ -113,6 +113,7 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     note = before.told(Joins("Berta"))
     assert (note.kind, note.about) == ("joins", "user5") and before.control.joined
     assert before.control.supervision.over
+    before.control.admit_no_more()
     assert "when the game goes on" in before.says(Joins("Carl"))
     do, what = before.link.done[-1]
     assert do == "go" and what["name"] == FRONT  # where the robot process begins
@@ -251,6 +252,25 @@ def test_a_person_for_whom_staff_asked_after_the_last_step_asks_after_a_crash(ta
     assert past is not None and past.asked_for == ("user2", "user4")
     again = LiveGame(workspace, take_up(workspace, past).past)
     assert again.world.scene().requests == ("user2",)
+    workspace.close()
+
+
+@pytest.mark.parametrize("users", [4, 9])
+@pytest.mark.parametrize("steps", [0, 3])
+def test_two_people_who_come_together_both_join(taught: Path, steps: int, users: int) -> None:
+    workspace = Workspace(taught, users=users)
+    before = LiveGame(workspace)
+    before.play(steps)
+    there = before.world.people
+    first = before.told(Joins("Berta"))
+    second = before.told(Joins("Otto", guest=True))
+    assert (first.kind, second.kind) == ("joins", "joins")
+    assert before.told(Joins("berta")) == StaffNote("known already", first.about)
+    after = LiveGame(workspace, resume_joined(workspace, LIVE), before=before.control)
+    assert {*after.world.people} == {*there, first.about, second.about}
+    assert [person for person in after.world.people if person in there] == [*there]
+    assert after.world.people == tuple(workspace.names)
+    assert after.control.phase == "running" and not log_problems(workspace.store)
     workspace.close()
 
 
