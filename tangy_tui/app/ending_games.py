@@ -6,6 +6,7 @@ import threading
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
@@ -89,7 +90,7 @@ class EndingGames:
             return [StaffNote("joining")]
         if refused := self.refusal() or self.admission.refusal(command):
             return [refused]
-        if not self.joined and not self.robot.go_to_front():
+        if not self.joined and not self._goes_to_front():
             return [StaffNote("not at front")]
         joins = self.admission.admit(command)
         self.note("came", person=joins.about)
@@ -98,6 +99,12 @@ class EndingGames:
         self.supervision.interrupt()
         self.joined, self.goes_on, self.going = True, self.going, True
         return [joins]
+
+    def _goes_to_front(self) -> bool:
+        """Drive to the front; return whether the robot has arrived, not if it was stopped."""
+        with suppress(DeviceError):
+            return self.robot.go_to_front()
+        return False
 
     def admit_no_more(self) -> None:
         """Admit nobody else: the robot is being set up for those who have joined."""

@@ -11,7 +11,9 @@ REFUSED = {
     "nobody joins": "Nobody new can join a simulated game. Add them before the next one.",
     "teams play": "Teams play this game: seat the new person with one of them.",
     "joining": "Not now: somebody is just joining. Say it again when the game goes on.",
-    "not at front": "Tangy could not drive to the front, so nobody has joined yet. Try again.",
+    "not at front": (
+        "Tangy could not drive to the front, so nobody has joined. Add them again when it can move."
+    ),
 }
 """Why nobody can join, or nothing else be done meanwhile, by the kind of note."""
 

@@ -7,6 +7,7 @@ from typing import cast
 
 import pytest
 
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_records import GameChange, GameEnding
@@ -271,6 +272,24 @@ def test_two_people_who_come_together_both_join(taught: Path, steps: int, users:
     assert [person for person in after.world.people if person in there] == [*there]
     assert after.world.people == tuple(workspace.names)
     assert after.control.phase == "running" and not log_problems(workspace.store)
+    workspace.close()
+
+
+def test_staff_read_that_nobody_joined_if_tangy_is_stopped_on_its_way(
+    taught: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(person: str) -> bool:
+        raise DeviceError("staff stopped it")
+
+    workspace = Workspace(taught)
+    people = workspace.names
+    game = LiveGame(workspace)
+    game.play(3)
+    with monkeypatch.context() as on_its_way:
+        on_its_way.setattr(game.world, "drive", stopped)
+        assert game.told(Joins("Berta")) == StaffNote("not at front")
+    assert workspace.names == people and not game.control.joined
+    assert game.told(Joins("Berta")).kind == "joins"
     workspace.close()
 
 
