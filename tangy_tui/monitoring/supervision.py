@@ -86,6 +86,7 @@ class Supervision:
         game.contradicts = self.detector.contradicts
         game.changes.on_change = self.detector.take_in
         self.recovery = Recovery(game, self.detector, robot, store, name)
+        self._interrupted = False
         self.watch = FaultWatch(game, book, self.detector, self.recovery)
         self._clearings: Counter[str] = Counter()
         self._stops = 0
@@ -207,7 +208,7 @@ class Supervision:
 
     def interrupt(self) -> None:
         """Leave the game where it is, so that another supervision can resume it from the log."""
-        self.game.over = True
+        self.game.over = self._interrupted = True
 
     def look(self) -> list[Event]:
         """Check the devices without acting, and return the new faults.
@@ -297,11 +298,10 @@ class Supervision:
         return told + self._end_if_hopeless()
 
     def note(self, did: StaffActionKind, by: str, **what: Any) -> None:
-        """Log an action of staff in a game: a STOP, an injected fault (see `StaffAction`)."""
-        if not self.over:
-            now = max(self.seconds, self.game.log.seconds)  # of a later moment than the last step
-            done = StaffAction(game=self.game.game, did=did, by=by, seconds=now, **what)
-            self._store.append(done)
+        """Log an action of staff in a game, or in one that is interrupted (see `StaffAction`)."""
+        if not self.over or self._interrupted:
+            game, now = self.game, max(self.seconds, self.game.log.seconds)  # after the last step
+            self._store.append(StaffAction(game=game.game, did=did, by=by, seconds=now, **what))
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Carry out a teacher's answer, and go on."""

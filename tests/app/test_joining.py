@@ -15,6 +15,7 @@ from tangy_profiles.game_world import LIVE
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT
 from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import (
@@ -172,6 +173,8 @@ def test_a_stop_while_the_robot_is_switched_on_again_holds(taught: Path, steps: 
     before.play(steps)
     assert before.told(Joins("Berta")).kind == "joins"
     before.control.apply(StopRobot(by="Nina"))
+    acts = [event.record for event in workspace.store.events(StaffAction)]
+    assert [(act.did, act.by) for act in acts] == [("came", "Ada"), ("stopped", "Nina")]
     past = resume_joined(workspace, LIVE)
     after = LiveGame(workspace, past, before=before.control)
     assert after.control.stopped
@@ -272,6 +275,8 @@ def test_two_people_who_come_together_both_join(taught: Path, steps: int, users:
     assert [person for person in after.world.people if person in there] == [*there]
     assert after.world.people == tuple(workspace.names)
     assert after.control.phase == "running" and not log_problems(workspace.store)
+    came = [event.record for event in workspace.store.events(StaffAction)]
+    assert [act.person for act in came] == [first.about, second.about] or not steps
     workspace.close()
 
 
