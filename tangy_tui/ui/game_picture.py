@@ -182,13 +182,14 @@ class GamePicture:
         question = self._supervision.question
         if chosen is None and question is not None:
             return why_asked(self._workspace, self._policy, question.state.situation)
-        return self.why_step(len(self.grounds) if chosen is None else chosen)
+        last = self.grounds[-1].acted.number if self.grounds else 0
+        return self.why_step(last if chosen is None else chosen)
 
     def why_step(self, number: int) -> WhyDialog | None:
         """Explain a step of this game; None: there is no such step."""
-        if not 1 <= number <= len(self.grounds):
-            return None
-        return why_step(self._workspace, self.grounds[number - 1], number)
+        found = (ground for ground in self.grounds if ground.acted.number == number)
+        ground = next(found, None)  # a resumed game has no grounds of its earlier steps
+        return None if ground is None else why_step(self._workspace, ground, number)
 
     def why_row(self, index: int) -> WhyDialog:
         """Explain a row of the policy."""
