@@ -162,9 +162,12 @@ class GamePlanControls:
         if self._idle:
             world.choose(replace(world.game_plan, patterns=patterns))
         else:
-            self._supervision.game.change("patterns chosen", patterns=patterns, by=self._by)
-            if world.patterns.present is not None:
-                labels.insert(0, world.patterns.present.label)
+            now, follow = world.patterns, patterns
+            if rules.pattern(patterns[0]).on(now.deck) == now.played:
+                follow = patterns[1:]  # the first is being played already
+            elif now.present is not None:
+                labels.insert(0, now.present.label)
+            self._supervision.game.change("patterns chosen", patterns=follow, by=self._by)
         self._note("patterns", detail=", ".join(patterns))
         return [StaffNote("patterns", ", then ".join(labels))]
 

@@ -134,6 +134,18 @@ def test_a_claim_is_checked_against_the_called_numbers(planned: Planned) -> None
     assert planned.celebrated()[-1] == "user3"
 
 
+@pytest.mark.parametrize("plan", [(), ("line",)])
+def test_the_pattern_being_played_does_not_follow_itself(
+    planned: Planned, plan: tuple[str, ...]
+) -> None:
+    planned.begin(GamePlan(plan))
+    planned.play(calls=2)
+    (note,) = planned.control.apply(ChoosePatterns(("line", "two lines")))
+    assert isinstance(note, StaffNote) and note.about == "a line, then two lines"
+    planned.do(ChoosePatterns(("line", "two lines")))
+    assert [one.name for one in planned.world.patterns.left] == ["two lines"]
+
+
 def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play(calls=2)
