@@ -246,8 +246,8 @@ class TestLogs:
             ("FLASER 3 1.0 2.0\n", "line 1: the line ends too early"),
             (FLASER + FLASER.replace("2.0", "two", 1), "line 2: 'two' is not a number"),
             (FLASER.replace("1.0", "nan", 1), "not a number that can be used"),
-            (FLASER.replace("FLASER 3", "FLASER -3"), "no number of readings"),
-            (FLASER.replace("FLASER 3", "FLASER 999999999"), "no number of readings"),
+            (FLASER.replace("FLASER 3", "FLASER -3"), "not a number of readings"),
+            (FLASER.replace("FLASER 3", "FLASER 999999999"), "not a number of readings"),
         ],
     )
     def test_an_invalid_line_is_refused_with_its_number(
@@ -262,7 +262,7 @@ class TestLogs:
         (tmp_path / "a.log").write_bytes(bytes(range(128, 256)))
         (tmp_path / "b.log").write_bytes(gzip.compress(FLASER.encode())[:-12])
         for name, told in (
-            ("a.log", "no text"),
+            ("a.log", "not text"),
             ("b.log", "breaks off"),
             ("c.log", "no such file"),
         ):

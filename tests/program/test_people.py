@@ -254,7 +254,7 @@ def test_unnamed_parts_of_a_method_stay_unchanged(people: Tangy) -> None:
         (("void", "Rosa", 17), "That request has no response yet that could be void."),
         (("void", "user3"), "User 3 has no response that counts."),
         (("method", "Rosa", "bayes"), "There is no method 'bayes': did you mean 'bayes-ucb'?"),
-        (("method", "Rosa", "0.1"), "a share from 0.5 to 1"),
+        (("method", "Rosa", "0.1"), "must be from 0.5 to 1"),
         (("undo", "Rosa"), "There is nothing to take back."),
         (("show", "Rosa", "--activity", "bingoo"), "did you mean 'bingo'?"),
     ],
