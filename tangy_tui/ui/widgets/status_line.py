@@ -114,4 +114,6 @@ class StatusLine(InkedWidget):
         left = room - seen - note
         if cell_len(stage) + (len(GAP) + len(game) if game else 0) <= left:
             return stage, game
+        if left < LEAST:  # there is no room for the note either
+            left = room - seen
         return shorten(stage, max(left, LEAST)), "" if stage else game
