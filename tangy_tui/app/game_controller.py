@@ -152,7 +152,7 @@ class GameController(PausingGames):
                 if self.stopped:  # in the meantime
                     self.robot.stop()
                     return []
-            past, self.past = self.past, None
+            past = self._take_past()
             events = self.supervision.begin(past, self.by)
             world = self.supervision.world
             if past is None:

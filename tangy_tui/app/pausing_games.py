@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from tangy_tui.app.ending_games import EndingGames
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import StaffNote
+from tangy_tui.app.joining_games import JoiningGames
 from tangy_tui.app.staff_view import StaffWatch
 
 
-class PausingGames(EndingGames):
-    """The part of the controller that pauses games."""
+class PausingGames(JoiningGames):
+    """The part of the controller that pauses games and stops the robot."""
 
+    stopped_by = ""
+    """The onlooker who stopped the robot last; empty: staff at this console."""
     going: bool
     """Whether the next behaviour may run; False: the game is paused."""
     single: bool
@@ -53,9 +55,15 @@ class PausingGames(EndingGames):
             self._tell_all()
 
     def _stop(self, by: str) -> list[Result]:
-        stopped = super()._stop(by)
+        before, self.stopped, self.going = self.stopped, True, False
+        if by or not before:
+            self.stopped_by = by
+        self.supervision.stopped_by_staff()
+        self.robot.stop()
+        if by or not before:
+            self.note("stopped", by=by)
         self._stands(did=False)
-        return stopped
+        return [StaffNote("stopped")]
 
     def _go_on(self) -> list[Result]:
         if self.stopped:

@@ -301,8 +301,9 @@ def _replay(
                 what = Noted("resumed", by)
                 pauses.resumed(max(acted, replay.seconds))
             case StaffAction() as action:
-                lets_in = action.did == "came" and action.person in new
-                new -= {action.person} if lets_in else set()
+                if action.did == "came" and action.person in new:
+                    lets_in = True
+                    new -= {action.person}
                 # while a step was carried out that comes later
                 acted = max(acted, action.seconds or 0.0)
                 pauses.did(action.did, max(acted, replay.seconds))
