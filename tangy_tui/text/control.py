@@ -61,6 +61,11 @@ def autonomy_words(level: Autonomy) -> str:
             assert_never(forgotten)
 
 
+def stopped_words(by: str) -> str:
+    """Tell that the robot is stopped, and by which onlooker; by="": staff at this console."""
+    return f"{by} stopped Tangy" if by else "Tangy was stopped"
+
+
 def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
     """Tell the robot's destination, and for whom it waits; "" if it is not driving."""
     if not going:
@@ -79,7 +84,7 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str], key: str = "Y
 BY_KEYS: dict[NoteKind, str] = {
     "paused": "Paused: {pause} goes on.",
     "stopped": "STOP. Press {pause} to go on.",
-    "stopped first": "Not now: Tangy was stopped. Press {pause} to go on first.",
+    "stopped first": "Not now: {stopped}. Press {pause} to go on first.",
     "asks first": "Tangy is asking: answer first ({command} to type).",
 }
 """Other words for staff who have keys, and type only to answer."""
@@ -89,7 +94,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
     """Describe the result of a command in a sentence."""
     about = noted.about
     if by_keys and (words := BY_KEYS.get(noted.kind)):
-        return words.replace("Tangy was stopped", _stopper(noted))
+        return words.replace("{stopped}", stopped_words(noted.words))
     match noted.kind:
         case "paused":
             return "Paused: Tangy does nothing more after this. Type: go on."
@@ -178,7 +183,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
                 "Tangy go on."
             )
         case "stopped first":
-            return f"Not now: {_stopper(noted)}. Type first: go on."
+            return f"Not now: {stopped_words(noted.words)}. Type first: go on."
         case "asks first":
             return "Tangy is asking: answer first, or type: give back."
         case "halted first":
@@ -233,10 +238,6 @@ def stands_words(why: str) -> str:
 
 def _cards(noted: StaffNote) -> str:
     return f" Cards in play: {noted.words}." if noted.words else ""
-
-
-def _stopper(noted: StaffNote) -> str:
-    return f"{noted.words} stopped Tangy" if noted.words else "Tangy was stopped"
 
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."

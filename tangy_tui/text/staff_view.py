@@ -117,9 +117,9 @@ def next_words(
     return f"Next: {done}{f' ({notes})' if notes else ''}{because}."
 
 
-def stopped_words(by: str) -> str:
-    """Tell that the robot is stopped, and by which onlooker; by="": staff at this console."""
-    return f"{by} stopped Tangy." if by else "Tangy was stopped."
+def welcomes_words(name: str) -> str:
+    """Tell that the robot drives to the front, to be set up for a new person."""
+    return f"Tangy drives to the front, and sets itself up for {name} there."
 
 
 def said_words(said: str) -> str:

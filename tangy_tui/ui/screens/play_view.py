@@ -11,6 +11,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.set_up import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
+from tangy_tui.text.control import stopped_words
 from tangy_tui.text.times import local_now
 from tangy_tui.ui.widgets.call_board import CallBoard, column_row
 from tangy_tui.ui.widgets.staff_panel import BOARD, PersonLine, StaffPanel
@@ -56,7 +57,9 @@ def _next(shown: ViewSource) -> str:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
         return f"{text.OVER} {said}".rstrip() if control.supervision.games else ""
     if control.stopped:
-        return text.stopped_words(control.stopped_by)
+        return f"{stopped_words(control.stopped_by)}."
+    if control.welcomes:
+        return text.welcomes_words(control.welcomes)
     found = next_step(world, control.supervision.policy)
     planned = as_planned(world)
     calls_first = 0 if planned is None else planned.tracker.calls_first
