@@ -16,6 +16,7 @@ from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
+from tangy_tui.text.watching import NO_GAME
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -135,3 +136,12 @@ async def test_the_room_is_drawn_again_for_a_person_who_joins(
         workspace.door.attach(more)
         await until_shown(pilot, lambda: "Berta" in pilot.text())
         assert new in screen.query_one(RoomView).scene.doing
+
+
+async def test_an_onlooker_reads_that_no_game_has_begun(
+    workspace: Workspace, data_folder: Path, run: Run
+) -> None:
+    workspace.door.open()
+    with Store.open(data_folder, write=False) as store:
+        async with run(WatchScreen(Guest(data_folder), store, who="Bea"), size=LARGE) as pilot:
+            await until_shown(pilot, lambda: NO_GAME in " ".join(pilot.text().split()))

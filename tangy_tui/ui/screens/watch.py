@@ -69,7 +69,7 @@ class WatchScreen(TangyScreen[None]):
         self._called = staff_names(self._log.name)
         self._who, self._note = who, note
         self._view: GameView | None = None
-        self._there = False
+        self._there = self._told_none = False
         self._shown: tuple[str, tuple[str, ...]] = ("", ())
         self._activity: Activity | None = None
 
@@ -121,6 +121,9 @@ class WatchScreen(TangyScreen[None]):
                 self.query_one(LogView).write(text.GOES_ON_LATER, "warn")
         if self._guest.stops > stops:
             self.query_one(LogView).write(text.STOPPED_HERE, "bad")
+        if self._there and self._guest.pid and self._guest.view is None and not self._told_none:
+            self._told_none = True
+            self.query_one(LogView).write(text.NO_GAME, "dim")
         if self._guest.view != self._view:
             self._view = self._guest.view
             await self._show_room()
