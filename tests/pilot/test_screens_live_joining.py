@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 
 import pytest
 
@@ -11,6 +11,7 @@ from tangy_hw.cancellation import Cancellation
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameEnding
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import Joins, SetAutonomy, StopRobot
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -18,7 +19,7 @@ from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.live import LiveScreen
-from tests.pilot.conftest import Run, StillClock
+from tests.pilot.conftest import Run, StillClock, TangyPilot
 from tests.pilot.live_games import HeldLink, live, live_world, paused_after
 from tests.support.waiting import until_shown
 
@@ -30,7 +31,7 @@ class Robot:
         self.groups: list[tuple[str, ...]] = []
         self.off = 0
         self.links: list[HeldLink] = []
-        self._workspace = workspace
+        self.workspace = workspace
         self.broken = False
         """Whether it does not come on."""
         self.meanwhile: Callable[[], object] = lambda: None
@@ -41,15 +42,29 @@ class Robot:
         if self.broken:
             raise TangyError("The laser scanner does not answer.")
         self.meanwhile()
-        people = tuple(self._workspace.names)
+        people = tuple(self.workspace.names)
         self.groups.append(people)
         link = HeldLink(people)
         link.most = 3  # calls, at most
         self.links.append(link)
         try:
-            yield live_world(self._workspace, link)
+            yield live_world(self.workspace, link)
         finally:
             self.off += 1
+
+
+@asynccontextmanager
+async def paused_game(run: Run, robot: Robot, policy: Policy) -> AsyncIterator[TangyPilot]:
+    """Play on the live screen with a robot, and pause after two steps."""
+
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+
+    program = Program(robot.workspace, start, clock=StillClock())
+    async with run(app=program, size=(160, 45)) as pilot:
+        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
+        await paused_after(pilot, robot.links[0], 2)
+        yield pilot
 
 
 @pytest.mark.slow
@@ -57,13 +72,7 @@ async def test_a_new_person_joins_a_game_on_the_screen(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     robot = Robot(workspace)
-
-    async def start(program: Program) -> None:
-        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
-
-    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
-        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
-        await paused_after(pilot, robot.links[0], 2)
+    async with paused_game(run, robot, policy) as pilot:
         first = live(pilot)
         called = tuple(first.world.called)
         first.control.apply(SetAutonomy("each"))
@@ -91,13 +100,7 @@ async def test_a_game_is_kept_if_the_robot_does_not_come_on_again(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     robot = Robot(workspace)
-
-    async def start(program: Program) -> None:
-        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
-
-    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
-        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
-        await paused_after(pilot, robot.links[0], 2)
+    async with paused_game(run, robot, policy) as pilot:
         first, robot.broken = live(pilot), True
         await pilot.press(":", *"add Berta", "enter")
         await until_shown(pilot, lambda: "does not answer" in pilot.text())
@@ -116,13 +119,7 @@ async def test_a_stop_that_leaves_the_robot_off_holds_when_it_is_switched_on_aga
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     robot = Robot(workspace)
-
-    async def start(program: Program) -> None:
-        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
-
-    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
-        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
-        await paused_after(pilot, robot.links[0], 2)
+    async with paused_game(run, robot, policy) as pilot:
         first = live(pilot)
         await pilot.press(":", *"add Berta", "enter")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, SwitchingOnDialog))
@@ -139,13 +136,7 @@ async def test_a_stop_that_leaves_the_robot_off_holds_when_it_is_switched_on_aga
 @pytest.mark.slow
 async def test_a_stop_meanwhile_holds(run: Run, workspace: Workspace, policy: Policy) -> None:
     robot = Robot(workspace)
-
-    async def start(program: Program) -> None:
-        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
-
-    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
-        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
-        await paused_after(pilot, robot.links[0], 2)
+    async with paused_game(run, robot, policy) as pilot:
         first = live(pilot)
         robot.meanwhile = lambda: first.control.apply(StopRobot(by="Nina"))
         await pilot.press(":", *"add Berta", "enter")
@@ -168,13 +159,7 @@ async def test_a_person_who_leaves_is_drawn_as_away_at_once(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     robot = Robot(workspace)
-
-    async def start(program: Program) -> None:
-        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
-
-    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
-        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
-        await paused_after(pilot, robot.links[0], 2)
+    async with paused_game(run, robot, policy) as pilot:
         assert "○" not in pilot.text()
         await pilot.press(":", *"User 2 left", "enter")
         await until_shown(pilot, lambda: "○" in pilot.text())
@@ -187,13 +172,7 @@ async def test_a_question_that_is_open_when_somebody_joins_is_answered_first(
     run: Run, workspace: Workspace, policy: Policy, leaves: bool
 ) -> None:
     robot = Robot(workspace)
-
-    async def start(program: Program) -> None:
-        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
-
-    async with run(app=Program(workspace, start, clock=StillClock()), size=(160, 45)) as pilot:
-        await until_shown(pilot, lambda: len(robot.groups) == 1 and "game 1" in pilot.text())
-        await paused_after(pilot, robot.links[0], 2)
+    async with paused_game(run, robot, policy) as pilot:
         first = live(pilot)
         await pilot.press("escape")
         await until_shown(pilot, lambda: "Leave in the middle of the game?" in pilot.text())
@@ -206,6 +185,8 @@ async def test_a_question_that_is_open_when_somebody_joins_is_answered_first(
             await until_shown(pilot, lambda: robot.off == 1)
             ends = [event.record for event in workspace.store.events(GameEnding)]
             assert len(ends) == 1 and len(robot.groups) == 1
+            did = [event.record.did for event in workspace.store.events(StaffAction)]
+            assert did == ["paused", "came", "ended"]
         else:
             await until_shown(pilot, lambda: "Berta takes part from now on." in pilot.text())
             assert len(robot.groups) == 2

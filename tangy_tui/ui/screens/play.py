@@ -181,6 +181,7 @@ class PlayScreen(PlayStaff):
         leaves = await self.app.push_screen_wait(dialog)
         self._leaving = False
         if leaves:
+            self.control.note("ended")
             self.control.end_joined(ENDED)
             await self._come_to_rest()
             self._end_game()
