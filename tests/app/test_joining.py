@@ -270,8 +270,10 @@ def test_two_people_who_come_together_both_join(taught: Path, steps: int, users:
     before.play(steps)
     there = before.world.people
     first = before.told(Joins("Berta"))
+    done = list(before.link.done)
     second = before.told(Joins("Otto", guest=True))
     assert (first.kind, second.kind) == ("joins", "joins")
+    assert before.link.done == done  # it stands at the front already
     assert before.told(Joins("berta")) == StaffNote("known already", first.about)
     after = LiveGame(workspace, resume_joined(workspace, LIVE), before=before.control)
     assert {*after.world.people} == {*there, first.about, second.about}

@@ -63,12 +63,23 @@ async def test_an_interrupted_game_resumes_paused_with_its_steps(
         assert f"{STEPS} steps before the interruption" in pilot.text()
         await pilot.press("full_stop")
         await until(lambda: screen.query_one(Transcript).count == STEPS + 1)
+        await pilot.press("full_stop")
+        await until(lambda: screen.query_one(Transcript).count == STEPS + 2)
+        await pilot.press("full_stop")
+        await until(lambda: screen.query_one(Transcript).count == STEPS + 3)
+        first, *_, last = (
+            f"Situation: {interrupted.activity.in_words(ground.acted.state.situation)}."
+            for ground in screen.picture.grounds
+        )
+        assert first != last
         await pilot.press("w")
-        await until_shown(pilot, lambda: f"Step {STEPS + 1}: why this?" in pilot.text())
+        await until_shown(pilot, lambda: f"Step {STEPS + 3}: why this?" in pilot.text())
+        assert last in pilot.text()
         await pilot.press("escape")
         screen.query_one(Transcript).focus()
-        await pilot.press("up", "enter")
+        await pilot.press("up", "up", "up", "enter")
         await until_shown(pilot, lambda: f"Step {STEPS + 1}: why this?" in pilot.text())
+        assert first in pilot.text()
 
     assert len(list(interrupted.store.events(GameBeginning))) == 1
 

@@ -12,7 +12,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameEnding
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import Joins, SetAutonomy, StopRobot
+from tangy_tui.app.game_commands import SetAutonomy, StopRobot
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
@@ -174,10 +174,13 @@ async def test_a_question_that_is_open_when_somebody_joins_is_answered_first(
     robot = Robot(workspace)
     async with paused_game(run, robot, policy) as pilot:
         first = live(pilot)
+        robot.links[0].free = False  # it is on its way to the front
+        await pilot.press(":", *"add Berta", "enter")
+        await until_shown(pilot, lambda: first.control.welcomes == "Berta")
         await pilot.press("escape")
         await until_shown(pilot, lambda: "Leave in the middle of the game?" in pilot.text())
-        first.control.apply(Joins("Berta"))  # as if it had taken the robot so long
-        assert first.control.joined
+        robot.links[0].free = True
+        await until_shown(pilot, lambda: first.control.joined)
         await pilot.pause(0.2)
         assert "Leave in the middle of the game?" in pilot.text() and len(robot.groups) == 1
         await pilot.press("y" if leaves else "n")

@@ -210,10 +210,11 @@ def test_faults_can_be_read_from_a_file(folder: Path, tmp_path: Path) -> None:
 
 
 def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
+    lines = ["wait until called", "add Berta", "wait 2", *["wait until called"] * 3, "end"]
     done = subprocess.run(  # noqa: S603
-        [TANGY, "live", "--bench", "--plain", "--seed", "4", "--by", "Nina", "--data", str(folder)],
-        input="\n".join(["wait until called", "add Berta", "wait 2", "wait until called", "end"]),
-        capture_output=True, text=True, timeout=240,
+        [TANGY, "live", "--bench", "--plain", "--seed", "4", "--by", "Nina", "--pace", "5",
+         "--inject", "arm-failed@1", "--inject", "voice-dead@4", "--data", str(folder)],
+        input="\n".join(lines), capture_output=True, text=True, timeout=240,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     joined, resumed = done.stdout.split("Berta takes part from now on.")
@@ -226,6 +227,9 @@ def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
     assert ("came", "Nina") in did and ("ended", "Nina") in did
     page, again = re.findall(r"open (http:\S+) on the tablet; the code there is (\S+)", done.stderr)
     assert page == again  # a tablet that shows it connects again
+    fault = "Fault, non-critical: "
+    assert joined.count(f"{fault}An arm") == 1 and f"{fault}An arm" not in resumed
+    assert f"{fault}No voice" not in joined and resumed.count(f"{fault}No voice") == 1  # later
 
 
 def test_staff_control_a_live_game_by_lines_and_the_log_names_them(folder: Path) -> None:
