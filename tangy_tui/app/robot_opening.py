@@ -53,8 +53,11 @@ class RobotOpening:
 
     workspace: Workspace
     bench: bool
+    """Whether the robot's devices are simulated."""
     lost: bool
+    """Whether the robot is not told its initial pose."""
     options: Mapping[str, Any]
+    """Named arguments of `open_bench` or `open_robot`."""
 
     def __call__(
         self, stepped: bool, cancellation: Cancellation, /
