@@ -32,6 +32,7 @@ class CameraStreams:
         self._signs = InfraredCamera(world.room, people, seed=seed)
         self._server = MjpegServer((HEAD, INFRARED))
         self._thread = ThreadPoolExecutor(1, "film")
+        self._ahead = ThreadPoolExecutor(1, "cards")
         self._tasks: list[asyncio.Task[None]] = []
 
     @property
@@ -53,7 +54,8 @@ class CameraStreams:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        self._thread.shutdown(wait=False, cancel_futures=True)
+        for thread in (self._thread, self._ahead):
+            thread.shutdown(wait=False, cancel_futures=True)
         await self._server.close()
 
     def silence(self, *, head_pulled: bool, head: bool, infrared: bool) -> None:
@@ -76,6 +78,7 @@ class CameraStreams:
     async def _film_head(self) -> None:
         loop, camera = asyncio.get_running_loop(), self._server.camera[HEAD]
         game, ahead = 0, list[tuple[int, int]]()
+        drawing: asyncio.Future[None] | None = None
         while True:
             due = loop.time() + PAUSE
             if camera.viewers and not camera.hangs:
@@ -83,9 +86,10 @@ class CameraStreams:
                     game = self._world.games
                     people = self._world.people.sitters.values()
                     ahead = [(n, one.card) for n, one in enumerate(people) if one.card]
-                elif ahead:  # draw one between two frames, so that the stream goes on
-                    who, card = ahead.pop(0)
-                    await loop.run_in_executor(self._thread, self._head.prepare, game, who, card)
+                elif ahead and (drawing is None or drawing.done()):
+                    who, card = ahead.pop(0)  # beside the frames, so that the stream goes on
+                    prepare = self._head.prepare
+                    drawing = loop.run_in_executor(self._ahead, prepare, game, who, card)
                 scene = self._world.head_scene()
                 jpeg = await loop.run_in_executor(self._thread, self._head.frame, scene)
                 if not _outdated(scene, self._world.head_scene()):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import OrderedDict, deque
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import cv2
@@ -63,6 +64,7 @@ class HeadCamera:
         self._pictures: OrderedDict[HeadScene, list[Picture]] = OrderedDict()
         self._tables: dict[tuple[int, int], Picture] = {}
         self._last = b""
+        self._drawing = Lock()  # of tables: `prepare` may run beside `frame`
 
     def frame(self, scene: HeadScene) -> bytes:
         """Return the next frame of a scene; a frozen camera repeats its last frame."""
@@ -141,13 +143,14 @@ class HeadCamera:
     def _table(self, game: int, who: int) -> Picture:
         """Draw the table before a person, which stays the same for a game."""
         key = game, who
-        if key not in self._tables:
-            random = np.random.default_rng([self._seed, 9, game, who])
-            table = np.clip(background(*SIZE, random) * 255 * 0.8, 0, 255).astype(np.uint8)
-            self._tables[key] = _with_napkin(table, random)
-            while len(self._tables) > len(self._people):
-                del self._tables[next(iter(self._tables))]
-        return self._tables[key]
+        with self._drawing:
+            if key not in self._tables:
+                random = np.random.default_rng([self._seed, 9, game, who])
+                table = np.clip(background(*SIZE, random) * 255 * 0.8, 0, 255).astype(np.uint8)
+                self._tables[key] = _with_napkin(table, random)
+                while len(self._tables) > len(self._people):
+                    del self._tables[next(iter(self._tables))]
+            return self._tables[key]
 
     def prepare(self, game: int, who: int, card: int) -> None:
         """Draw the slowest parts in advance: the face of a card, and the table under it."""
