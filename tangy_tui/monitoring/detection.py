@@ -48,6 +48,8 @@ class Detector:
         self.activity = activity
         self._robot = robot
         self._refusals: Counter[str] = Counter()
+        self._in_visit: Counter[str] = Counter()
+        """Unsuccessful requests since the robot came, whatever was followed between them."""
         self._in_game: Counter[str] = Counter()
         self._refusing: set[str] = set()
         """Who refused in a whole visit, and has followed no request since."""
@@ -64,6 +66,7 @@ class Detector:
     def begin(self) -> None:
         """Reset for a new game."""
         self._refusals.clear()
+        self._in_visit.clear()
         self._in_game.clear()
         self._refusing.clear()
         self._unchanged.clear()
@@ -75,6 +78,7 @@ class Detector:
     def refused(self, person: str) -> int:
         """Count that a person did not follow a request; return how often in a row."""
         self._refusals[person] += 1
+        self._in_visit[person] += 1
         self._in_game[person] += 1
         if self._refusals[person] >= self.activity.asking.visit:
             self._refusing.add(person)
@@ -95,15 +99,20 @@ class Detector:
             return {}
         times, spent = self._refusals[person], self.spent_for_game(person)
         found: dict[str, Fact] = {"person.refusals": times} if times or spent else {}
-        if spent or times >= self.activity.asking.visit:
+        if spent or max(times, self._in_visit[person]) >= self.activity.asking.visit:
             found["person.spent"] = True
         return found
 
     def forgive(self, person: str | None) -> None:
-        """Reset the count of a person's unsuccessful requests."""
+        """Reset the count of a person's unsuccessful requests in a row.
+
+        Those of the visit still count, unless the person was just left in peace for them.
+        """
         self._fruitless = 0
         if person is not None:
             self._refusals.pop(person, None)
+            if self._in_visit[person] >= self.activity.asking.visit:
+                self._in_visit.pop(person)
 
     @property
     def devices(self) -> tuple[str, ...]:
@@ -246,6 +255,8 @@ class Detector:
     def _count(self, acted: Acted, explained: bool) -> None:
         """Count refused requests, and behaviours that changed nothing."""
         before, after, outcome = acted.state, acted.after, acted.outcome
+        if before.place != after.place:
+            self._in_visit.clear()
         if outcome.response is not None:
             person = before.attended or outcome.response.person  # the person at this place
             if outcome.response.followed:

@@ -65,6 +65,22 @@ def test_a_hidden_card_counts_as_a_refusal_only_after_a_refused_visit(
     assert told(encourage), "a refusal explains no behaviour that asks for nothing"
 
 
+def test_requests_in_a_visit_count_although_one_between_was_followed(
+    workspace: Workspace, detector: Detector
+) -> None:
+    most = workspace.activity.asking.visit
+    for _ in range(most - 1):
+        detector.refused("user1")
+    detector.forgive("user1")  # its card could be seen again
+    detector.refused("user2")
+    assert "person.spent" not in detector.refusals("user2")
+    assert detector.refused("user1") == 1
+    assert detector.refusals("user1")["person.spent"]
+    detector.forgive("user1")  # left in peace
+    detector.refused("user1")
+    assert "person.spent" not in detector.refusals("user1")
+
+
 def test_the_simulated_body_has_the_devices_of_the_robot() -> None:
     devices = load_robot().devices
     assert set(READINGS) == set(devices)

@@ -69,9 +69,12 @@ class VainRequest(NamedTuple):
 
 
 def vain_requests(events: list[Event]) -> list[VainRequest]:
-    """Return the requests that were not followed, in order."""
+    """Return the requests that were not followed, in order.
+
+    A request aloud was followed if its fault has recovered right after it.
+    """
     found: list[VainRequest] = []
-    visit = 0
+    visit, aloud = 0, ""
     for event in events:
         if isinstance(event, Acted):
             visit += event.state.place != event.after.place
@@ -81,4 +84,11 @@ def vain_requests(events: list[Event]) -> list[VainRequest]:
                 found.append(VainRequest(visit, event.after.place, str(event.action.strategy)))
         elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:
             found.append(VainRequest(visit, event.fault.person, "aloud"))
+            aloud = event.fault.id
+            continue
+        elif (
+            isinstance(event, Moved) and event.move.kind == "recovered" and event.fault.id == aloud
+        ):
+            found.pop()
+        aloud = ""
     return found
