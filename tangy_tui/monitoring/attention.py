@@ -29,7 +29,8 @@ class Attention:
 
     `waits` are the times in s from each request until Tangy arrived or the request was closed;
     `open` are those of requests still open at the end. `seconds` is Tangy's time with the person,
-    `helped` counts its behaviours there, and `won` the person's wins.
+    `helped` counts its behaviours there, and `won` the person's wins. `could_visit`: Tangy visits
+    people in that game, or in one of several.
     """
 
     id: str
@@ -40,6 +41,12 @@ class Attention:
     last_visit: float | None = None
     helped: Counter[str] = field(default_factory=Counter)
     won: int = 0
+    could_visit: bool = True
+
+    @property
+    def never_visited(self) -> bool:
+        """Whether Tangy could have visited the person, and did not."""
+        return self.could_visit and not self.visits
 
     @property
     def requests(self) -> int:
@@ -65,6 +72,7 @@ class Attention:
         self.last_visit = other.last_visit if other.last_visit is not None else self.last_visit
         self.helped.update(other.helped)
         self.won += other.won
+        self.could_visit = self.could_visit or other.could_visit
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +89,8 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
 
     People who were away for the whole game are left out, unless they had a request or a visit.
     """
-    found = {person: Attention(person) for person in replay.game.people}
+    goes = goes_to_people(replay.activity)
+    found = {person: Attention(person, could_visit=goes) for person in replay.game.people}
     asked: dict[str, float] = {}
     requests = replay.requests
     before: Done | None = None
@@ -104,7 +113,7 @@ def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
     added: dict[str, Attention] = {}
     for replay in replays:
         for person, one in attention_in(replay).items():
-            added.setdefault(person, Attention(person)).add(one)
+            added.setdefault(person, Attention(person, could_visit=False)).add(one)
     return added
 
 

@@ -67,7 +67,7 @@ class PersonOverTime:
     @property
     def sum(self) -> Attention:
         """The person's attention, summed over the games."""
-        added = Attention(self.name)
+        added = Attention(self.name, could_visit=False)
         for one in self.games:
             added.add(one.attention)
         return added

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.declared.model import Declaration, Fact
@@ -72,12 +71,13 @@ class PlayerFacts:
         }
 
 
-def player_facts(replays: Sequence[GameReplay], activity: Activity | None) -> list[PlayerFacts]:
-    """Read the games of an activity by facts; skip those without player facts."""
-    if not isinstance(activity, DeclaredActivity):
-        return []
-    mine = [replay for replay in replays if replay.game.activity == activity.name]
-    found = [_facts_of(replay, activity.declaration) for replay in mine]
+def player_facts(replays: Sequence[GameReplay]) -> list[PlayerFacts]:
+    """Read the games of activities by facts; skip those without player facts."""
+    found = [
+        _facts_of(replay, replay.activity.declaration)
+        for replay in replays
+        if isinstance(replay.activity, DeclaredActivity)
+    ]
     return [one for one in found if one.counts or one.acts]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
@@ -187,6 +187,19 @@ class GameReplay:
     """Step and person of visits without a request."""
     staff_pauses: PauseTotal = field(default_factory=PauseTotal)
     """When staff paused the game or stopped the robot."""
+    activity: Activity | None = None
+    """The activity of the game; None if it is unknown."""
+
+    @property
+    def title(self) -> str:
+        """The title of its activity, or the activity's name if it is unknown."""
+        return self.game.activity if self.activity is None else self.activity.title
+
+    @property
+    def persuades(self) -> bool:
+        """Whether Tangy asks people to do something in it (True if the activity is unknown)."""
+        known = self.activity
+        return known is None or any(one.persuades for one in known.behaviours.values())
 
     @property
     def requests(self) -> dict[int, frozenset[str]]:
@@ -220,6 +233,12 @@ class GameReplay:
     def real_faults(self) -> list[Fault]:
         """The faults, without questions about what to do."""
         return [fault for fault in self.faults if not fault.asks_only]
+
+
+def activities_of(replays: Iterable[GameReplay]) -> tuple[Activity, ...]:
+    """Return the known activities of some games, each once, in order."""
+    known = (replay.activity for replay in replays)
+    return tuple({one.name: one for one in known if one is not None}.values())
 
 
 def read_replays(
@@ -266,7 +285,7 @@ def _replay(
     names: Mapping[str, str],
 ) -> GameReplay:
     told = (event for event in events if isinstance(event.record, FaultDiagnosed | FaultMove))
-    replay = GameReplay(game, faults=fold_faults(told, names))
+    replay = GameReplay(game, faults=fold_faults(told, names), activity=activity)
     faults = {fault.id: fault for fault in replay.faults}
     moved: dict[str, int] = {}  # fault id -> number of its moves so far
     step, acted = 0, 0.0

@@ -4,35 +4,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from datetime import datetime
+from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.beliefs import Beliefs, Beta
-from tangy_profiles.persuading import PAPER
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.interaction.feedback import FeedbackEntry
-from tangy_tui.interaction.memory import PersonModel, PersonModels, counted, replayed
 from tangy_tui.interaction.tally import TallyRow
-from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import BORNE, OPEN, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.pauses import PauseTotal
+from tangy_tui.monitoring.people_progress import Progress, people_progress
 from tangy_tui.monitoring.player_facts import PlayerFacts, player_facts
-from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
-
-RESULTS = (
-    ("complied", "did it"),
-    ("late", "did it late"),
-    ("refused", "would rather not"),
-    ("void", "void"),
-    ("awaited", "without an answer"),
-)
-"""Outcomes of a request: the counts of `Attempts`, and their words."""
+from tangy_tui.monitoring.replay import GameReplay, Noted, activities_of, read_replays
 
 SET_ASIDE = "set aside"
 """The remedy that leaves a person alone: staff should look after them."""
@@ -44,74 +30,6 @@ INJECTED: tuple[StaffActionKind | Literal["resumed"], ...] = (
     "faults planned",
 )
 """Actions after which faults of a session came on purpose."""
-
-
-@dataclass
-class Attempts:
-    """Results of one strategy with one person: its uses, and the responses.
-
-    `late`: followed too late to count as complied. `void` ones do not count in the belief,
-    `awaited` ones have no answer yet. `before` and `after` are the beliefs.
-    """
-
-    complied: int = 0
-    late: int = 0
-    refused: int = 0
-    void: int = 0
-    awaited: int = 0
-    before: Beta = field(default_factory=Beta)
-    after: Beta = field(default_factory=Beta)
-
-    @property
-    def used(self) -> int:
-        """How often the strategy was used in the session."""
-        return self.complied + self.late + self.refused + self.void + self.awaited
-
-    @property
-    def in_words(self) -> str:
-        """The results in words: "2 complied, 1 without an answer"."""
-        return result_words({what: getattr(self, what) for what, _ in RESULTS})
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the counts, and the beliefs with mean and interval."""
-        return {
-            "used": self.used,
-            "complied": self.complied,
-            "late": self.late,
-            "not": self.refused,
-            "void": self.void,
-            "awaited": self.awaited,
-            "before": _belief(self.before),
-            "after": _belief(self.after),
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """One person in a session: strategy -> results."""
-
-    id: str
-    name: str
-    strategies: Mapping[str, Attempts]
-
-    @property
-    def interactions(self) -> int:
-        """How often the person was asked for something."""
-        return sum(one.used for one in self.strategies.values())
-
-    def total(self, what: str) -> int:
-        """Sum one of the counts over the strategies."""
-        return sum(getattr(one, what) for one in self.strategies.values())
-
-    @property
-    def in_words(self) -> str:
-        """The results of all requests, over the strategies."""
-        return result_words({what: self.total(what) for what, _ in RESULTS})
-
-
-def result_words(counts: Mapping[str, int]) -> str:
-    """Format the outcomes of requests in words, without zero counts."""
-    return ", ".join(f"{counts[what]} {words}" for what, words in RESULTS if counts[what])
 
 
 NoteKind: TypeAlias = Literal["unknown activity", "no times", "brought about"]
@@ -130,7 +48,7 @@ class SessionNote:
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """The contents of a session's report; `title` is the activity's."""
+    """The contents of a session's report; `title` names its activities."""
 
     replays: tuple[GameReplay, ...]
     title: str
@@ -139,10 +57,6 @@ class Session:
     notes: tuple[SessionNote, ...]
     """Notes for the reader about the sources of the report."""
     names: Mapping[str, str]
-    reads: frozenset[str] = frozenset()
-    """The stages in which Tangy helps a person."""
-    activity: Activity | None = None
-    """The first known activity of the games."""
 
     def name(self, person: str) -> str:
         """Return a person's name."""
@@ -151,7 +65,17 @@ class Session:
     @property
     def player_facts(self) -> list[PlayerFacts]:
         """People's answers and counts, game by game, in an activity by facts."""
-        return player_facts(self.replays, self.activity)
+        return player_facts(self.replays)
+
+    @property
+    def activities(self) -> tuple[Activity, ...]:
+        """The known activities of the games, in order."""
+        return activities_of(self.replays)
+
+    @property
+    def persuades(self) -> bool:
+        """Whether Tangy asks people to do something in one of the games."""
+        return any(replay.persuades for replay in self.replays)
 
     @property
     def timed_faults(self) -> tuple[tuple[str, Fault], ...]:
@@ -264,7 +188,6 @@ def read_session(
         names: people's names, by id.
     """
     replays = tuple(read_replays(store, games, activities, names))
-    activity = next((activities[g.activity] for g in games if g.activity in activities), None)
     unknown = sorted({g.activity for g in games if g.activity not in activities})
     notes = [SessionNote("unknown activity", name) for name in unknown]
     if not all(replay.timed for replay in replays):
@@ -273,128 +196,29 @@ def read_session(
     on_purpose = dict.fromkeys(one.detail for one in noted if one.did in INJECTED)
     if on_purpose:
         notes.append(SessionNote("brought about", "; ".join(on_purpose)))
-    titles = {activities[g.activity].title if g.activity in activities else g.activity
-              for g in games}  # fmt: skip
+    titles = dict.fromkeys(replay.title for replay in replays)
     return Session(
         replays=replays,
-        title=", ".join(sorted(titles)),
-        rows=_rows(replays, activity),
-        people=_people(store, replays, activity, names),
+        title=", ".join(titles),
+        rows=_rows(replays),
+        people=people_progress(store, replays, names),
         notes=tuple(notes),
         names=names,
-        reads=frozenset(s for s in activity.stages if activity.reads(s))
-        if activity
-        else frozenset(),
-        activity=activity,
     )
 
 
-def _rows(replays: Sequence[GameReplay], activity: Activity | None) -> tuple[TallyRow, ...]:
+def _rows(replays: Sequence[GameReplay]) -> tuple[TallyRow, ...]:
     done: Counter[tuple[Situation, str]] = Counter()
     right: Counter[tuple[Situation, str]] = Counter()
     for step in (step for replay in replays for step in replay.done):
         done[step.state.situation, step.behaviour] += 1
         right[step.state.situation, step.behaviour] += step.right
-    order = (
-        activity.situations if activity is not None else tuple(dict.fromkeys(s for s, _ in done))
-    )
+    known = [situation for one in activities_of(replays) for situation in one.situations]
+    order = dict.fromkeys([*known, *(situation for situation, _ in done)])
     rank = {situation: place for place, situation in enumerate(order)}
     return tuple(
         TallyRow(situation, behaviour, count, right[situation, behaviour] / count)
         for (situation, behaviour), count in sorted(
-            done.items(), key=lambda item: (rank.get(item[0][0], len(rank)), item[0])
+            done.items(), key=lambda item: (rank[item[0][0]], item[0])
         )
     )
-
-
-def _people(
-    store: Store,
-    replays: Sequence[GameReplay],
-    activity: Activity | None,
-    names: Mapping[str, str],
-) -> tuple[Progress, ...]:
-    present = tuple(attention(replays))  # without those who were away for all games
-    if not present:
-        return ()
-    said = {a.uuid: a.followed for replay in replays for _, a in replay.answers}
-    strategies = activity.strategies if activity is not None else dict.fromkeys(
-        a.strategy for replay in replays for _, a in replay.answers
-    )  # fmt: skip
-    chosen = activity.persuasion if activity is not None else PAPER
-    memory = PersonModels(store, tuple(strategies), chosen, world=replays[-1].game.world)
-    responses = memory.responses()
-    return tuple(
-        _progress(
-            person,
-            names.get(person, person),
-            memory.recall(person, responses),
-            memory.history(person),
-            replays,
-            said,
-        )
-        for person in present
-    )
-
-
-def _progress(
-    person: str,
-    name: str,
-    known: PersonModel,
-    history: Sequence[FeedbackEntry],
-    replays: Sequence[GameReplay],
-    said: Mapping[str, bool | None],
-) -> Progress:
-    """Count the results of each strategy, and compute the beliefs before and after.
-
-    Corrections made later apply: a response that was voided counts in neither belief.
-    """
-    games = {replay.game.id for replay in replays}
-    first, last = replays[0].game, replays[-1].game
-    asked = {entry.request: entry.seq for entry in history if entry.request == entry.uuid}
-    before = [e for e in history if asked.get(e.request, e.seq) < first.seq]
-    after = [
-        e for e in history
-        if last.last_seq is None or asked.get(e.request, e.seq) <= last.last_seq or e.game in games
-    ]  # fmt: skip
-    until = last.ended or max((entry.at for entry in after), default=last.at)
-    old = _beliefs(known, person, before, first.at)
-    new = _beliefs(known, person, after, until)
-    found = {s: Attempts(before=old[s], after=new[s]) for s in known.beliefs}
-    for entry in history:
-        one = found.get(entry.strategy)
-        if entry.game not in games or one is None or entry.settled:
-            continue  # another entry has the answer to this request
-        if entry.void:
-            one.void += 1
-        elif entry.complied is None:
-            one.awaited += 1
-        elif entry.complied:
-            one.complied += 1
-        elif said.get(entry.uuid):
-            one.late += 1
-        else:
-            one.refused += 1
-    return Progress(person, name, found)
-
-
-def _beliefs(
-    known: PersonModel, person: str, entries: Sequence[FeedbackEntry], now: datetime
-) -> Beliefs:
-    if known.method.forgets:
-        return replayed(known.method, known.prior, entries, now)
-    counts: dict[tuple[str, str], tuple[int, int]] = {}
-    for entry in entries:
-        if entry.counts:
-            yes, no = counts.get((person, entry.strategy), (0, 0))
-            complied = bool(entry.complied)
-            counts[person, entry.strategy] = (yes + complied, no + (not complied))
-    return counted(known.prior, person, counts)
-
-
-def _belief(belief: Beta) -> dict[str, Any]:
-    return {
-        "alpha": belief.alpha,
-        "beta": belief.beta,
-        "mean": belief.mean,
-        "interval": list(belief.interval()),
-    }

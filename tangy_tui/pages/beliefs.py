@@ -7,7 +7,7 @@ from functools import cache
 from html import escape
 
 from tangy_profiles.beliefs import Beta
-from tangy_tui.monitoring.session import Attempts, Progress
+from tangy_tui.monitoring.people_progress import Attempts, Progress
 
 WIDTH, LEFT, RIGHT, ROW, AXIS = 460, 100, 22, 30, 20
 """The layout of the drawing in its own units: names of strategies at the left, the axis below."""

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 
-from tangy_tui.monitoring.attention import attention, goes_to_people
+from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
+from tangy_tui.monitoring.people_progress import RESULTS, Progress
 from tangy_tui.monitoring.replay import GameReplay
-from tangy_tui.monitoring.session import RESULTS, Progress, Session
+from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.staff_parts import STYLE as PARTS_STYLE
 from tangy_tui.pages.staff_parts import (
     calls_part,
     faults_part,
+    game_part,
     people_part,
     player_facts_part,
     staff_part,
@@ -184,8 +186,7 @@ def _sentence(words: str) -> str:
 
 def _care(session: Session) -> Iterator[str]:
     yield heading(say.CARE)
-    found, visits = attention(session.replays).values(), goes_to_people(session.activity)
-    people = care_lines(found, session.name, visits=visits)
+    people = care_lines(attention(session.replays).values(), session.name)
     if people:
         lines = "".join(f"<li>{escape(line)}</li>" for line in people)
         yield f'<div class="care"><ul>{lines}</ul></div>'
@@ -209,18 +210,21 @@ def _care(session: Session) -> Iterator[str]:
 def _timelines(session: Session, most: int) -> Iterator[str]:
     numbers = _numbers(session)
     drawn = session.replays[-most:]
-    stages = {s: stage_words(session.activity, s) for s in stages_of(session.replays)}
     yield f'<div class="game">{heading(say.WHEN)}'
     if len(drawn) < len(session.replays):
         yield paragraph(say.drawn_words(most, len(session.replays)))
-    yield _key(stages)
+    played, stages = "", dict[str, str]()
     for index, replay in enumerate(drawn):
         if index:
             yield '<div class="game">'
         if len(session.replays) > 1:
-            game = replay.game
-            yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
-            yield paragraph(_sentence(game.ending))
+            yield game_part(replay)
+            yield paragraph(_sentence(replay.game.ending))
+        if not index or replay.game.activity != played:  # stages of the same name may differ
+            played = replay.game.activity
+            same = [r for r in session.replays if r.game.activity == played]
+            stages = {s: stage_words(replay.activity, s) for s in stages_of(same)}
+            yield _key(stages)
         yield f'<div class="drawn">{_timeline(replay, numbers, session, stages)}</div></div>'
 
 
@@ -244,6 +248,8 @@ def _key(stages: Mapping[str, str]) -> str:
 
 
 def _people(session: Session) -> Iterator[str]:
+    if not session.persuades:
+        return
     yield heading(say.RESPONDED)
     asked = [person for person in session.people if person.interactions]
     if not asked:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from tangy_tui.monitoring.attention import attention
+from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.page import heading, paragraph, table
 from tangy_tui.text import player_facts as players
@@ -30,26 +30,10 @@ STYLE = """
 
 def people_part(session: Session) -> Iterator[str]:
     """Report each person's requests, waits, visits, help, and responses."""
-    found = attention(session.replays)
-    answers = [answer for replay in session.replays for _, answer in replay.answers]
+    columns, rows = say.people_table(session)
     yield heading(say.PEOPLE)
     yield '<div class="people">'
-    yield table(
-        say.PEOPLE_COLUMNS,
-        (
-            (
-                session.name(one.id),
-                say.asked_words(one),
-                say.waited_words(one),
-                say.visits_words(one),
-                say.time_words(one),
-                say.helped_words(one, session.activity),
-                say.response_words([a for a in answers if a.person == one.id]),
-                str(one.won or ""),
-            )
-            for one in found.values()
-        ),
-    )
+    yield table(columns, rows)
     yield "</div>"
     for line in say.changes_lines(session.replays, session.name):
         yield paragraph(line)
@@ -78,14 +62,19 @@ def player_facts_part(session: Session) -> Iterator[str]:
     if not found:
         return
     yield heading(players.HEADING)
-    games = {game.id: game for game in session.games}
+    replays = {replay.game.id: replay for replay in session.replays}
     for one in found:
-        if len(found) > 1:
-            game = games[one.game]
-            yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
+        if len(replays) > 1:
+            yield game_part(replays[one.game])
         yield table(players.player_columns(one), players.player_rows(one, session.name))
         if one.acts:
             yield table(players.act_columns(one), players.act_rows(one, session.name))
+
+
+def game_part(replay: GameReplay) -> str:
+    """Return the heading of a game in a session of several."""
+    words = players.game_heading(replay)
+    return f"<h3>{escape(words[:1].upper() + words[1:])}, {day_and_time(replay.game.at)}</h3>"
 
 
 def staff_part(session: Session) -> Iterator[str]:

@@ -68,7 +68,7 @@ def month_rows(months: Sequence[Month]) -> Iterator[tuple[str, ...]]:
     for month in months:
         people = month.people
         every = [wait for person in people for wait in person.sum.waits]
-        never = [person.name for person in people if not person.sum.visits]
+        never = [person.name for person in people if person.sum.never_visited]
         replays = [replay for _, replay in month.games]
         faults = [fault for replay in replays for fault in replay.real_faults]
         critical = sum(fault.critical for fault in faults)
@@ -119,7 +119,7 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
             waited_words(got),
             visits_words(got),
             time_words(got),
-            helped_words(got, one.log.activity(one.replay.game)),
+            helped_words(got, filter(None, [one.replay.activity])),
             response_words(one.answers),
             "yes" if got.won else "",
         )

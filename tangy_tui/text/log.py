@@ -6,17 +6,18 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.game_records import CallMade, GameChange
-from tangy_tui.monitoring.attention import attention, goes_to_people
+from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
+from tangy_tui.monitoring.people_progress import Progress
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted, Unclear
-from tangy_tui.monitoring.session import Progress, Session
+from tangy_tui.monitoring.session import Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.player_facts import HEADING, player_lines
+from tangy_tui.text.player_facts import HEADING, in_game_words, player_lines
 from tangy_tui.text.report import (
     attention_lines,
     call_lines,
@@ -134,7 +135,7 @@ def answer_words(answer: AnsweredRequest) -> str:
 
 def session_lines(session: Session) -> Iterator[str]:
     """Summarise a session: games, faults, people, and what needs attention."""
-    yield from _games_lines(session.games, session.activity)
+    yield from _games_lines(session.replays)
     if session.timed:
         paused = paused_words(session.staff_pauses)
         yield f"Time in the room: {length(session.seconds)}{paused}."
@@ -142,9 +143,10 @@ def session_lines(session: Session) -> Iterator[str]:
     yield from changes_lines(session.replays, session.name)
     found = attention(session.replays).values()
     yield from attention_lines(found, session.name)
-    yield from care_lines(found, session.name, visits=goes_to_people(session.activity))
+    yield from care_lines(found, session.name)
+    replays = {replay.game.id: replay for replay in session.replays}
     for facts in session.player_facts:
-        yield f"{HEADING}:"
+        yield f"{HEADING}{in_game_words(replays, facts)}:"
         yield from player_lines(facts, session.name)
     yield from call_lines(session)
     yield from staff_action_lines(session)
@@ -167,9 +169,9 @@ def session_lines(session: Session) -> Iterator[str]:
             )
     yield ""
     yield from (_person_line(person) for person in session.people if person.interactions)
-    if quiet := [person.name for person in session.people if not person.interactions]:
+    if session.persuades and (quiet := [p.name for p in session.people if not p.interactions]):
         yield quiet_words(quiet)
-    yield from limits_lines(session.games)
+    yield from limits_lines([replay.game for replay in session.replays if replay.persuades])
     if session.look_after:
         yield ""
         yield "To look after:"
@@ -193,8 +195,10 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
         yield f"The robot waited for late data {times}, for {seconds:.1f} s in all."
 
 
-def _games_lines(games: Sequence[Game], activity: Activity | None) -> Iterator[str]:
+def _games_lines(replays: Sequence[GameReplay]) -> Iterator[str]:
     """Describe each game, of many only those with problems, and the totals."""
+    games = [replay.game for replay in replays]
+    activities = {replay.game.id: replay.activity for replay in replays}
     told = games
     if len(games) > MOST_TOLD:
         told = [game for game in games if game.critical or game.other or not game.smooth]
@@ -204,7 +208,9 @@ def _games_lines(games: Sequence[Game], activity: Activity | None) -> Iterator[s
             yield "Those with faults, or that did not go to their end:"
     for game in told:
         words = f"{counted(game.steps, 'step')}. {game.ending[:1].upper()}{game.ending[1:]}"
-        yield f"{game_words(game, activity)}: {words}" + ("" if words.endswith(".") else ".")
+        yield f"{game_words(game, activities[game.id])}: {words}" + (
+            "" if words.endswith(".") else "."
+        )
     if len(told) < len(games):
         rest = counted(len(games) - len(told), "game")
         other = "other " if told else ""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from tangy_profiles.declared.situation_words import value_words
 from tangy_tui.monitoring.player_facts import PlayerFacts
+from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.text.numbers import listed
 from tangy_tui.text.situations import Name
 from tangy_tui.text.times import time_of_day
@@ -13,6 +14,17 @@ from tangy_tui.text.times import time_of_day
 HEADING = "Answers and scores"
 PERSON, WHEN, ITEM = "person", "when", "what it was about"
 UNCLEAR = "not clear"
+
+
+def in_game_words(replays: Mapping[str, GameReplay], facts: PlayerFacts) -> str:
+    """Name the game after the heading, if a session has several: ", game 2, Trivia"."""
+    replay = replays[facts.game]
+    return f", {game_heading(replay)}" if len(replays) > 1 else ""
+
+
+def game_heading(replay: GameReplay) -> str:
+    """Name a game of a session: "game 2, Trivia"."""
+    return f"game {replay.game.number}, {replay.title}"
 
 
 def player_columns(facts: PlayerFacts) -> tuple[str, ...]:

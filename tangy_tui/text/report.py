@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.card_news import BY as TANGY
-from tangy_tui.monitoring.attention import Attention, Call, calls_in
+from tangy_tui.monitoring.attention import Attention, Call, attention, calls_in
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
+from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted, listed
@@ -23,7 +24,6 @@ from tangy_tui.text.times import length, time_of_day
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.games import Game
-    from tangy_tui.monitoring.session import Session
 
 WORLD_WORDS: Mapping[GameWorld, str] = {
     UNKNOWN: "from an unknown world",
@@ -34,10 +34,6 @@ WORLD_WORDS: Mapping[GameWorld, str] = {
 """The worlds of games, in reports."""
 
 PEOPLE = "Who got what"
-PEOPLE_COLUMNS = (
-    "person", "asked for help", "waited", "visits", "time with Tangy", "help given", "asked to do",
-    "won",
-)  # fmt: skip
 CALLED = "Numbers that were called"
 TAKEN_BACK, BACK = "crossed out: taken back", "taken back"
 STAFF = "What staff did"
@@ -81,8 +77,8 @@ def waited_words(one: Attention) -> str:
 
 
 def visits_words(one: Attention) -> str:
-    """Tell how often Tangy visited a person."""
-    return str(one.visits) if one.visits else "never"
+    """Tell how often Tangy visited a person; a dash if Tangy visits nobody in the activity."""
+    return "never" if one.never_visited else str(one.visits or "\N{EN DASH}")
 
 
 def time_words(one: Attention) -> str:
@@ -90,11 +86,12 @@ def time_words(one: Attention) -> str:
     return length(one.seconds) if one.seconds else "\N{EN DASH}"
 
 
-def helped_words(one: Attention, activity: Activity | None) -> str:
+def helped_words(one: Attention, activities: Iterable[Activity]) -> str:
     """Tell what Tangy did with a person, and how often."""
+    known = {b: a.behaviour_words(b) for a in activities for b in a.behaviours}
     parts = []
     for behaviour, times in one.helped.items():
-        words = behaviour if activity is None else activity.behaviour_words(behaviour)
+        words = known.get(behaviour, behaviour)
         parts.append(words if times == 1 else f"{words} ({times})")
     return ", ".join(parts) or "\N{EN DASH}"
 
@@ -111,14 +108,42 @@ def response_words(answers: Sequence[AnsweredRequest]) -> str:
     return ", ".join(filter(None, (words, more)))
 
 
-def care_lines(found: Iterable[Attention], name: Name, *, visits: bool = True) -> list[str]:
-    """Name the people who need attention: still waiting, or after a long wait.
+def people_table(session: Session) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Return the columns and rows of the table of people.
 
-    If Tangy `visits` people in the activity, also those without a visit.
+    What none of the activities has is left out: visits, requests to do something, or winners.
     """
+    people = attention(session.replays).values()
+    answers = [answer for replay in session.replays for _, answer in replay.answers]
+    known, unknown = session.activities, any(r.activity is None for r in session.replays)
+    visits = any(one.could_visit for one in people)
+    wins = unknown or any(b.needs for one in known for b in one.behaviours.values())
+    columns: list[tuple[str, Callable[[Attention], str]]] = [
+        ("person", lambda one: session.name(one.id)),
+        ("asked for help", asked_words),
+        ("waited", waited_words),
+    ]
+    if visits:
+        columns += [
+            ("visits", visits_words),
+            ("time with Tangy", time_words),
+            ("help given", lambda one: helped_words(one, known)),
+        ]
+    if session.persuades:
+        columns += [
+            ("asked to do", lambda o: response_words([a for a in answers if a.person == o.id]))
+        ]
+    if wins:
+        columns += [("won", lambda one: str(one.won or ""))]
+    rows = [tuple(words(one) for _, words in columns) for one in people]
+    return tuple(name for name, _ in columns), rows
+
+
+def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
+    """Name the people who need attention: still waiting, after a long wait, or never visited."""
     people = list(found)
     lines = []
-    if visits and (never := [name(one.id) for one in people if not one.visits]):
+    if never := [name(one.id) for one in people if one.never_visited]:
         lines.append(f"Tangy never went to {listed(never)}.")
     waiting, waited = dict[str, list[str]](), dict[str, list[str]]()
     for one in sorted(people, key=lambda one: -max(one.open or one.waits, default=0.0)):
@@ -142,8 +167,8 @@ def attention_lines(found: Iterable[Attention], name: Name) -> list[str]:
     """Tell who won, and how long those who asked for help waited and had Tangy with them."""
     people = list(found)
     asked = [
-        f"  {name(one.id)} {counted(one.requests, 'time')}: waited {waited_words(one)}; "
-        f"{counted(one.visits, 'visit')}, {length(one.seconds)} in all"
+        f"  {name(one.id)} {counted(one.requests, 'time')}: waited {waited_words(one)}"
+        + (f"; {counted(one.visits, 'visit')}, {length(one.seconds)} in all" * one.could_visit)
         for one in people
         if one.requests
     ]
@@ -209,8 +234,8 @@ def fault_outcome(fault: Fault, status: str) -> str:
 
 def call_rows(session: Session) -> list[tuple[Game, list[tuple[str, bool]]]]:
     """Return the calls of each game that has any: each label, and whether it was taken back."""
-    rows = [(replay.game, calls_in(replay)) for replay in session.replays]
-    return [(game, call_labels(calls, session.activity)) for game, calls in rows if calls]
+    rows = [(replay, calls_in(replay)) for replay in session.replays]
+    return [(replay.game, call_labels(calls, replay.activity)) for replay, calls in rows if calls]
 
 
 def call_lines(session: Session) -> Iterator[str]:

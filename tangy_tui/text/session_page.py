@@ -9,7 +9,7 @@ from tangy_tui.text.numbers import counted
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import Fault
-    from tangy_tui.monitoring.session import Progress
+    from tangy_tui.monitoring.people_progress import Progress
 
 VISIT = "Tangy is with them"
 STOOD_STILL = "Tangy stood still"

@@ -3,29 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from html import escape
 from pathlib import Path
 from typing import cast
+from xml.etree import ElementTree
 
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
 from tangy_hw.robot_client.fact_observation import FactObservation
+from tangy_profiles.activity import Activity
 from tangy_profiles.declared.acts import raw
 from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.game_records import AnswerNotClear, GameBeginning, GameStep
 from tangy_profiles.game_world import LIVE
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
+from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_profiles.store import Store
+from tangy_tui.monitoring.attention import Attention, attention
 from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.house import by_month, of_world, read_log
 from tangy_tui.monitoring.session import Session, read_session
 from tangy_tui.pages.session import session_page
+from tangy_tui.text.house import MONTH_COLUMNS, month_rows
 from tangy_tui.text.log import session_lines
+from tangy_tui.text.player_facts import HEADING
+from tangy_tui.text.report import call_rows, care_lines, people_table
 from tests.hw.links import FakeLink
 from tests.support.declared import declared
 
 PEOPLE = ("user1", "user2", "user3")
+ALL = tuple(UserState(id, "-", "ANR") for id in PEOPLE)
+CALLING = ActivityState(0, Situation("calling", "ANR", "-"), FRONT, None, ALL, None)
 
 
 class Quiz:
@@ -104,6 +115,51 @@ def test_page_and_lines_list_answers_scores_and_unclear_answers(quiz: Quiz) -> N
     assert "  Rosa: score 1; answer: it is right (1)" in lines
     assert "  user3: score 0; 1 not clear" in lines
     assert session.to_json()["player_facts"][0]["counts"]["score"]["user1"] == 1
+
+
+def test_each_game_of_an_evening_is_reported_with_its_own_activity(
+    quiz: Quiz, activity: Activity
+) -> None:
+    bingo = GameBeginning(game="b", number=2, activity="bingo", people=PEOPLE, world=LIVE)
+    called = GameStep(
+        game="b", behaviour="call number", target=None, state=CALLING, after=CALLING, numbers=(7,),
+    )  # fmt: skip
+    played(quiz)
+    quiz.store.append(bingo)
+    quiz.store.append(called)
+    for newest_first in (False, True):
+        games = sorted(read_games(quiz.store), key=lambda game: game.number, reverse=newest_first)
+        known = {"trivia": quiz.activity, "bingo": activity}
+        session = read_session(quiz.store, games, known, {})
+        (facts,) = session.player_facts
+        assert (facts.game, facts.counts["score"]["user1"]) == ("g", 1)
+        assert [labels for _, labels in call_rows(session)] == [[("B-7", False)]]
+        page = session_page(session, full=False)
+        ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
+        assert all(one.title in page for one in known.values())
+        quizzed = {done.state.stage for r in session.replays for done in r.done} - {"calling"}
+        assert all(escape(quiz.activity.stage_words(stage)) in page for stage in quizzed)
+        assert "never went" in page and HEADING in page  # in Bingo it could have gone
+
+
+def test_people_are_missed_only_if_tangy_visits_people(quiz: Quiz, activity: Activity) -> None:
+    played(quiz)
+    trivia = read_session(quiz.store, read_games(quiz.store), {"trivia": quiz.activity}, {})
+    found = attention(trivia.replays).values()
+    assert found and not any(one.could_visit or one.never_visited for one in found)
+    assert care_lines(found, str) == []
+    columns, rows = people_table(trivia)
+    assert not {"visits", "time with Tangy", "asked to do", "won"} & {*columns}
+    assert len(rows) == len(PEOPLE) and {*map(len, rows)} == {len(columns)}
+    assert not any(name in line for line in session_lines(trivia) for name in ("Not asked", "vain"))
+    unknown = read_session(quiz.store, read_games(quiz.store), {}, {})
+    assert all(one.never_visited for one in attention(unknown.replays).values())
+    log = read_log(quiz.store, {}, {"trivia": quiz.activity})
+    (month,) = month_rows(by_month(of_world([log], LIVE)))
+    assert month[MONTH_COLUMNS.index("never visited")] == "nobody"
+    both = Attention("ann", could_visit=False)
+    both.add(Attention("ann"))
+    assert both.never_visited, "in one of the games Tangy visits people"
 
 
 def test_a_report_without_player_facts_has_no_section_for_them(quiz: Quiz) -> None:

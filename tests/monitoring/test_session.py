@@ -20,8 +20,9 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
 from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
+from tangy_tui.monitoring.people_progress import RESULTS
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted, read_replays
-from tangy_tui.monitoring.session import RESULTS, Session, SessionNote, read_session
+from tangy_tui.monitoring.session import Session, SessionNote, read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
 from tests.monitoring.conftest import Supervise
