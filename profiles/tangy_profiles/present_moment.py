@@ -14,6 +14,9 @@ class PresentMoment(Protocol):
     saying: str
     """The speech of the behaviour in progress or of the last one, with people by their ids."""
 
+    said_before: str
+    """What stays on the chest screen of a resumed game, as it was said; "" once it says more."""
+
     ahead: DeclaredGame
     """The game as it will be after the behaviour in progress, or else as it is."""
 

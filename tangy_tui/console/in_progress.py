@@ -10,6 +10,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.text.games import says_line
 from tangy_tui.text.situations import Name
+from tangy_tui.text.staff_view import said_words
 from tangy_tui.text.telling import waiting_words
 
 
@@ -40,6 +41,12 @@ class ProgressLines:
             self._going = going
             told.append(waiting_words(*going, world.activity.object, self._name))
         return [line for line in told if line]
+
+    def resumed(self) -> list[str]:
+        """Return the line about what the chest screen of a resumed game still shows."""
+        now = as_present(self._controller.supervision.world)
+        said = "" if now is None else with_names(now.said_before, self._name)
+        return [said_words(said)] if said else []
 
     def step(self, acted: Acted, lines: Sequence[str]) -> list[str]:
         """Return the lines about a step without the words that were told while Tangy spoke."""

@@ -39,7 +39,7 @@ from tangy_tui.console.inputs import ReadAhead, any_waits
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.console.script_waits import ScriptWaits
 from tangy_tui.console.typed_yes import TypedYes
-from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, Taught
+from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, ResumedGame, Taught
 from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.learning.verification import (
     NotUnderstood,
@@ -222,6 +222,8 @@ class StaffLines:
                 lines = game_lines(one, self._game, self._name, answered, goes_on=on)
                 if isinstance(one, Acted):
                     lines = self._progress.step(one, lines)
+                elif isinstance(one, ResumedGame):
+                    lines = [*lines, *self._progress.resumed()]
                 self._write_all(lines)
         self._write_all(filter(None, self._also(events)))
 

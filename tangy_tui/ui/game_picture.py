@@ -84,10 +84,13 @@ class GamePicture:
 
     @property
     def said(self) -> str:
-        """Tangy's speech in this or the last step of the present game, "" before that."""
+        """Tangy's speech in this or the last step of the present game, "" before that.
+
+        In a game that was resumed, it is what the chest screen still shows, such as a question.
+        """
         now = as_present(self._supervision.world)
-        if now is not None and now.saying:
-            return with_names(now.saying, self._workspace.name)
+        if now is not None and (said := now.saying or now.said_before):
+            return with_names(said, self._workspace.name)
         return self.grounds[-1].acted.speech if self.grounds else ""
 
     def begin(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import UTC, datetime
 from random import Random
-from typing import cast
+from typing import Any, cast
 
 import pytest
 
@@ -15,6 +15,7 @@ from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_profiles.codec import decode, encode
 from tangy_profiles.declared.acts import acts, raw
 from tangy_profiles.declared.typed_observations import TypedObservation
+from tangy_profiles.declared.vocabulary import YES
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.game_records import GameBeginning, GameChange, GameStep
 from tangy_profiles.game_world import LIVE
@@ -67,6 +68,12 @@ def play(world: DeclaredWorld | DeclaredLiveWorld, steps: int, since: int = 0) -
     return done
 
 
+def shown_by(world: DeclaredLiveWorld) -> list[dict[str, Any]]:
+    """Return the pictures that the robot was asked to show."""
+    done = cast(FakeLink, world.link).done
+    return [what["picture"] for do, what in done if do == "perform"]
+
+
 def let_act(world: DeclaredLiveWorld, step: int) -> None:
     """Let people act, the same at each step of every game."""
     for act in list(acts(world.game.copy(), drawn=Random(f"{step}").random)):
@@ -91,6 +98,33 @@ def test_a_resumed_live_game_equals_an_uninterrupted_one(name: str, killed_at: i
     assert resumed.memory == before[-1].memory == whole.memory
     rest = play(whole, 15, since=killed_at)
     assert rest and states(play(resumed, 15, since=killed_at)) == states(rest)
+
+
+def test_a_question_that_was_open_is_on_the_chest_screen_and_told_after_a_resume() -> None:
+    whole = live("trivia")
+    whole.begin()
+    before = play(whole, 2)
+    question = whole.saying
+    while whole.game.value("open", None) != YES:  # it was answered at once
+        before += play(whole, 1, since=len(before))
+        question = whole.saying
+    resumed = live("trivia")
+    resumed.resume(past_of("trivia", before))
+    (shown,) = shown_by(resumed)
+    assert question and resumed.said_before == question
+    assert shown["asks"] and shown["text"] and shown in shown_by(whole)
+    assert not resumed.saying and not cast(FakeLink, resumed.link).said, "it is not said again"
+    play(resumed, 1, since=len(before))
+    assert (resumed.said_before, bool(resumed.saying)) == ("", True)
+
+
+def test_nothing_is_shown_after_a_resume_if_nothing_stayed_on_the_screen() -> None:
+    whole = live("trivia")
+    whole.begin()
+    before = play(whole, 1)  # a welcome
+    resumed = live("trivia")
+    resumed.resume(past_of("trivia", before))
+    assert (resumed.said_before, shown_by(resumed)) == ("", [])
 
 
 @pytest.mark.parametrize("name", DECLARED)

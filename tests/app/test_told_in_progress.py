@@ -48,3 +48,11 @@ def test_words_of_a_step_that_was_over_at_once_are_told_with_it() -> None:
     play(told.world, 1)
     assert len(told.done()) == 2
     assert told.lines.news() == []
+
+
+def test_what_a_resumed_game_still_shows_is_told_once() -> None:
+    told = Told()
+    assert told.lines.resumed() == []
+    told.world.said_before = "\x02user1\x03, question 3?"
+    assert [line.endswith("Rosa, question 3?") for line in told.lines.resumed()] == [True]
+    assert told.lines.news() == [], "Tangy does not say it now"

@@ -7,10 +7,12 @@ reports by staff, heard answers) and with the behaviours that the robot has carr
 from __future__ import annotations
 
 from collections import deque
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.device_protocols import DeviceError, Picture
+from tangy_hw.robot_client.chest_picture import chest_picture, standing_picture
 from tangy_hw.robot_client.declared_tracker import DeclaredTracker
 from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_hw.robot_client.live_world import LiveWorld
@@ -25,7 +27,7 @@ from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.situation_words import words_now
-from tangy_profiles.declared.speech import again, media, person_on_screen, with_names, words
+from tangy_profiles.declared.speech import again, media, with_names, words
 from tangy_profiles.declared.typed_observations import TypedObservation, meant
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.defaults import ASK_AGAIN
@@ -55,7 +57,7 @@ class DeclaredLiveWorld(LiveWorld):
     def __init__(self, activity: DeclaredActivity, *both: Any, **named: Any) -> None:
         """Create the world of a robot that is switched on, as `LiveWorld` does."""
         self._told: deque[FactObservation] = deque()
-        self.saying = ""
+        self.saying = self.said_before = ""
         """The speech of the behaviour in progress, with people by their ids; "": none yet."""
         self.unsure: FactObservation | None = None
         """Latest observation too uncertain to be judged: the person is asked again."""
@@ -66,7 +68,7 @@ class DeclaredLiveWorld(LiveWorld):
         self.game = drawn_game(self.activity.declaration, self.people, self._order.random)
         for person in sorted(self.away):
             self.game.observe(HERE, person, NO)
-        self.ahead, self.saying = self.game, ""
+        self.ahead, self.saying, self.said_before = self.game, "", ""
         self._progress = ProgressWatch(self.game)
         self.tracker = DeclaredTracker(self.activity, self.game)
         self._started = self.link.time
@@ -110,6 +112,10 @@ class DeclaredLiveWorld(LiveWorld):
         self.over = False
         self.commands.settle()
         self.commands.await_tablets()
+        self.said_before, picture = standing_picture(game, self.seat_of)
+        if picture is not None:
+            with suppress(DeviceError):  # a dark screen is a fault of its own
+                self.commands.perform("", picture)
         return self.observe()
 
     def change(self, change: GameChange) -> None:
@@ -246,14 +252,11 @@ class DeclaredLiveWorld(LiveWorld):
         after = game.copy()
         after.execute(behaviour.name, whom)
         speech, image = words(after, game, behaviour.name, action.strategy, whom)
-        self.ahead, self.saying = after, speech
-        asks = "" if behaviour.persuades else self.seat_of(person_on_screen(after, whom))
-        shown, heard = media(after, behaviour.name)
-        file = shown.path if shown else ""
-        picture = Picture(with_names(image, self.seat_of), asks=asks, file=file)
+        self.ahead, self.saying, self.said_before = after, speech, ""
+        _, heard = media(after, behaviour.name)
         self.say(
             with_names(speech, self.name_of),
-            picture,
+            chest_picture(after, behaviour.name, whom, image, self.seat_of),
             self._robot.postures[action.posture],
             with_names(speech, self.seat_of),
             heard.path if heard else "",

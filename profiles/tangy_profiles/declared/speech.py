@@ -75,6 +75,19 @@ def _image(game: DeclaredGame, behaviour: str, whom: str | None) -> str:
     return game.declaration.title
 
 
+def standing_words(game: DeclaredGame) -> tuple[str, str]:
+    """Return the speech and screen text of what stays on the chest screen; "" if nothing does.
+
+    The speech is that of the last time, with the first strategy.
+    """
+    if game.screen is None:
+        return "", ""
+    name, whom, _ = game.screen
+    before = game.copy()
+    before.executed[name] = max(0, before.executed.get(name, 0) - 1)
+    return words(game, before, name, "", whom)
+
+
 def person_on_screen(game: DeclaredGame, whom: str | None) -> str | None:
     """Return the person whom the chest screen names after a behaviour, None for nobody.
 
