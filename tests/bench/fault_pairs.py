@@ -9,8 +9,9 @@ of a newly taught robot, so that it can be replayed alone; the folder of a game 
 diagnosis is kept, and printed. A fault is missed if
 it could show and was not named; it is repeated if a second diagnosis has its code but it came
 once. A person who never complies is reported in each visit, which counts once; so does a request
-that a person left unanswered and that Tangy finds again in a later visit. A diagnosis that
-neither of the two faults explains is a false alarm.
+that a person left unanswered and that Tangy finds again in a later visit. A person who refuses may
+have a fault of the same kind as somebody else: they are counted apart. A diagnosis that neither of
+the two faults explains is a false alarm.
 """
 
 from __future__ import annotations
@@ -90,12 +91,13 @@ def judged(game: Supervision, one: PairGame) -> PairGame:
         if came.named is None:
             one.wrong.append(f"missed {came.kind} (called {came.called or 'nothing'})")
     came_often = Counter(came.kind.code for came in world.injection_log.all)
+    refuse = {fault.person for fault in game.faults if fault.code == ANEW}
     told = Counter(
-        fault.code
+        (fault.code, fault.person if fault.person in refuse else None)
         for number, fault in enumerate(game.faults)
         if not fault.asks_only and not any(left_at(one, fault) for one in game.faults[:number])
     )
-    for code, times in told.items():
+    for (code, _), times in told.items():
         if code != ANEW and came_often[code] and times > came_often[code]:
             one.wrong.append(f"told {times} times: {code}")
     one.wrong += [f"false alarm {code}" for code in score.false_alarms]
