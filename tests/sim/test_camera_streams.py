@@ -32,16 +32,18 @@ async def test_the_stream_goes_on_while_cards_are_drawn_in_advance(
 
     monkeypatch.setattr(HeadCamera, "prepare", slow)
     await streams.start()
-    host, port = "127.0.0.1", int(streams.url(HEAD).split(":")[2].split("/")[0])
-    with socket.create_connection((host, port)) as viewer:
-        viewer.sendall(b"GET /head HTTP/1.0\r\n\r\n")
-        world.games = 1
-        world.people.sitters["user1"].card = 17
-        async with asyncio.timeout(8):
-            while not begun.is_set():  # noqa: ASYNC110 - another thread sets it
-                await asyncio.sleep(0.02)
-            sent = streams.sent["head"]
-            while streams.sent["head"] < sent + 3:  # noqa: ASYNC110 - a counter
-                await asyncio.sleep(0.02)
-    goes_on.set()
-    await streams.close()
+    try:
+        host, port = "127.0.0.1", int(streams.url(HEAD).split(":")[2].split("/")[0])
+        with socket.create_connection((host, port)) as viewer:
+            viewer.sendall(b"GET /head HTTP/1.0\r\n\r\n")
+            world.games = 1
+            world.people.sitters["user1"].card = 17
+            async with asyncio.timeout(8):
+                while not begun.is_set():  # noqa: ASYNC110 - another thread sets it
+                    await asyncio.sleep(0.02)
+                sent = streams.sent["head"]
+                while streams.sent["head"] < sent + 3:  # noqa: ASYNC110 - a counter
+                    await asyncio.sleep(0.02)
+    finally:
+        goes_on.set()
+        await streams.close()
