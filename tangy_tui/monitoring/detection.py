@@ -50,6 +50,7 @@ class Detector:
         self._refusals: Counter[str] = Counter()
         self._in_visit: Counter[str] = Counter()
         """Unsuccessful requests since the robot came, whatever was followed between them."""
+        self._place: str | None = None
         self._in_game: Counter[str] = Counter()
         self._refusing: set[str] = set()
         """Who refused in a whole visit, and has followed no request since."""
@@ -209,6 +210,13 @@ class Detector:
     def take_in(self, now: ActivityState) -> None:
         """Start from a new state, after an action of staff or a change of the plan."""
         self._last = now
+        self._arrive(now.place)
+
+    def _arrive(self, place: str) -> None:
+        """Begin a visit if the robot has left its place."""
+        if place != self._place:
+            self._in_visit.clear()
+        self._place = place
 
     def unexpected(
         self, behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
@@ -255,8 +263,7 @@ class Detector:
     def _count(self, acted: Acted, explained: bool) -> None:
         """Count refused requests, and behaviours that changed nothing."""
         before, after, outcome = acted.state, acted.after, acted.outcome
-        if before.place != after.place:
-            self._in_visit.clear()
+        self._arrive(after.place)
         if outcome.response is not None:
             person = before.attended or outcome.response.person  # the person at this place
             if outcome.response.followed:

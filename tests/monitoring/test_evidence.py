@@ -69,6 +69,22 @@ def test_consecutive_refusals_are_counted_until_a_success(detector: Detector) ->
     assert counted == [1, 2, None, 1]
 
 
+@pytest.mark.parametrize("leaves", ["not", "by itself", "by staff"])
+def test_the_limit_of_a_visit_applies_until_the_robot_leaves(
+    detector: Detector, leaves: str
+) -> None:
+    no = acted("mark numbers", HELP, did("user1", followed=False))
+    yes = acted("mark numbers", HELP, did("user1", followed=True, complied=True))
+    away = acted("navigate to front", HELP, changed=True)
+    spent = [evidence(detector, step).get("person.spent") for step in (no, no, yes)]
+    if leaves == "by itself":
+        detector.compare(away)
+    elif leaves == "by staff":
+        detector.take_in(away.after)
+    spent.append(evidence(detector, no).get("person.spent"))
+    assert spent == [None, None, None, True if leaves == "not" else None]
+
+
 def test_a_refusal_counts_only_for_the_attended_person(detector: Detector) -> None:
     detector.compare(acted("mark numbers", HELP, did("user1", followed=False), changed=True))
     users = (UserState("user1", "occluded", "ANR"), UserState("user2", "occluded", "AR"))

@@ -49,6 +49,17 @@ def test_a_card_hidden_after_a_request_counts_as_in_vain(
     assert ended(events).stopped is None
 
 
+@pytest.mark.parametrize("seed", [18, 19])
+def test_a_card_that_comes_back_does_not_begin_the_count_of_the_visit_anew(
+    supervise: Supervise, seed: int
+) -> None:
+    events = play(supervise("never-complies@8", "card-out-of-sight~.3", seed=seed))
+    assert any(one.move.kind == "recovered" for one in events if isinstance(one, Moved))
+    visits = Counter(one.visit for one in vain_requests(events))
+    assert max(visits.values()) == MOST
+    assert ended(events).stopped is None
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("beside", ["arm-failed@3", "requests-silent@3", "voice-dead@3"])
 def test_other_faults_do_not_raise_the_limit_of_requests(
