@@ -96,8 +96,9 @@ class StaffWatch:
         """Resume a game at a time in s; restore its clock, its waits, and the times of visits."""
         ends = dict[str, float]()
         for step, over in zip(past.steps, past.clock, strict=True):
-            if step.target in past.beginning.people and step.completed:
-                ends[step.target] = over
+            after = step.after
+            if after is not None and after.place != FRONT:  # others are helped without a visit
+                ends[after.place] = over
         began = now - past.seconds
         self.begin(began)
         self._visited = {person: began + end for person, end in ends.items()}

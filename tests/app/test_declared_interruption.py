@@ -24,6 +24,7 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_sim.worlds.declared_world import DeclaredWorld
+from tangy_tui.app.staff_view import StaffWatch
 from tests.hw.links import FakeLink
 from tests.support.declared import DECLARED, declared
 
@@ -125,6 +126,25 @@ def test_nothing_is_shown_after_a_resume_if_nothing_stayed_on_the_screen() -> No
     resumed = live("trivia")
     resumed.resume(past_of("trivia", before))
     assert (resumed.said_before, shown_by(resumed)) == ("", [])
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_staff_see_the_same_visits_after_a_resume(name: str) -> None:
+    world, watch, steps = live(name), StaffWatch(), list[GameStep]()
+    world.begin()
+    watch.begin(world.seconds)
+
+    def visited(watch: StaffWatch) -> set[str]:
+        view = watch.look(world.scene(), PEOPLE, world.seconds, world)
+        return {one.id for one in view.people if one.unvisited is not None}
+
+    seen = visited(watch)
+    while not world.over and len(steps) < 12:
+        steps += play(world, 1, since=len(steps))
+        seen = visited(watch)
+    resumed = StaffWatch()
+    resumed.resume(world.seconds, past_of(name, steps), world.activity)
+    assert any(step.target for step in steps) and visited(resumed) == seen
 
 
 @pytest.mark.parametrize("name", DECLARED)
