@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.model import PAUSE_SECONDS
-from tangy_profiles.declared.situations import seen_facts
+from tangy_profiles.declared.situation_words import seen_words
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.state import EVERYBODY, ActivityState
 from tangy_tui.text.numbers import counted
@@ -19,15 +19,16 @@ if TYPE_CHECKING:
     from tangy_tui.learning.policy import Policy
 
 
-def facts_words(state: ActivityState, name: Callable[[str], str]) -> list[str]:
+def facts_words(
+    activity: DeclaredActivity, state: ActivityState, name: Callable[[str], str]
+) -> list[str]:
     """Describe the facts seen in a game of a declared activity, and whose turn it is."""
     turn = dict(state.whom).get("whose turn")
-    sentences = [f"It is the turn of {name(turn)}."] if turn is not None else []
-    facts = seen_facts(state.situation)
-    if facts:
-        seen = ", ".join(f"{fact} is {value}" for fact, value in facts.items())
-        sentences.append(f"Seen: {seen}.")
-    return sentences
+    seen = seen_words(activity.declaration, state.situation)
+    return [
+        *([f"It is {name(turn)}'s turn."] if turn is not None else []),
+        *([f"{seen[:1].upper()}{seen[1:]}."] if seen else []),
+    ]
 
 
 def activity_lines(activity: DeclaredActivity) -> Iterator[str]:

@@ -43,9 +43,9 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
         case "came":
             return f"{person} is here now."
         case "joined":
-            return f"{person} takes part from now on."
+            return f"{person} has joined."
         case "visit":
-            return f"{person} has had no visit for a while. Tangy goes there."
+            return f"Tangy has not visited {person} for a while, and goes there now."
         case "visit put off":
             return f"Others are asking, so {person}'s visit waits."
         case "visit over":

@@ -57,10 +57,11 @@ def _only(record: Record) -> str:
     """Tell the counts of the only strategy that is on, since one cannot be the best."""
     (only,) = record.on
     name, belief = record.person.name, record.beliefs[only]
-    words = f"only {only} is switched on for {name}"
-    if not record.known.off:
-        words = f"{only} is the only strategy for {name}"
-    return f"{words}: {tally(belief)}" if belief.trials else f"{words}: no response yet"
+    if record.known.off:
+        words = f"only {only} is switched on for {name}"
+        return f"{words}: {tally(belief)}" if belief.trials else f"{words}: no response yet"
+    words = f"Tangy has only one way of asking {name}"
+    return f"{words}: it worked {tally(belief)} times" if belief.trials else words
 
 
 def tally(belief: Beta) -> str:

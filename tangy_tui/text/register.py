@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tangy_profiles.person import is_guest
 
@@ -11,6 +11,14 @@ from tangy_profiles.person import is_guest
 def added_words(name: str, id: str) -> str:
     """Tell that a person now takes part."""
     return f"{name} now takes part (id {id})."
+
+
+def one_name(words: Sequence[str]) -> str:
+    """Tell how to add several people, or one whose name has several words."""
+    return (
+        f"Add one person at a time: tangy people add {words[0]}. Put a name of several words in "
+        f'quotes: tangy people add "{" ".join(words)}".'
+    )
 
 
 def archived_words(name: str) -> str:

@@ -98,8 +98,8 @@ def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Na
         sentences.append(shown.hint)
         if scene.card is not None:
             sentences.append(card_words(activity, scene.card))
-    if state.facts:
-        sentences += facts_words(state, name)
+    if isinstance(activity, DeclaredActivity):
+        sentences += facts_words(activity, state, name)
     return " ".join(part for part in sentences if part)
 
 

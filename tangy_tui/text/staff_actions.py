@@ -44,19 +44,19 @@ def action_words(noted: Noted, name: Name) -> str:
         case "called again":
             return f"the last number was called again{f': {detail}' if detail else ''}"
         case "asked for":
-            return f"help was called for {person}"
+            return f"Tangy was told that {person} asks for help"
         case "told":
-            return f"Tangy was told of {person or 'the group'}: {detail}"
+            return f"Tangy was told about {person or 'the group'}: {detail}"
         case "heard":
-            return f"Tangy heard of {person or 'the group'}: {detail}"
+            return f"Tangy heard from {person or 'the group'}: {detail}"
         case "pace":
             return f"the pace was set to {detail} s"
         case "took back":
             return f"a call was taken back: {detail}"
         case "claim right":
-            return f"card {detail}{_of(person)} was checked: it wins"
+            return f"{_card(detail, person)} was checked: it wins"
         case "claim wrong":
-            return f"card {detail}{_of(person)} was checked: it does not win yet"
+            return f"{_card(detail, person)} was checked: it does not win yet"
         case "patterns":
             return f"the game went on for: {detail}"
         case "rules":
@@ -66,15 +66,15 @@ def action_words(noted: Noted, name: Name) -> str:
         case "left":
             return f"{person} left"
         case "response voided":
-            return f"the last response of {person} does not count"
+            return f"{person}'s last response does not count"
         case "card given":
             return f"{person} has {f'card {detail}' if detail else 'another card'}"
         case "cards dealt":
             return f"cards dealt: {_named(detail, name)}"
         case "card learnt":
-            return f"Tangy takes card {detail} for that of {person}"
+            return f"Tangy takes card {detail} to be {person}'s"
         case "card doubted":
-            return f"Tangy did not judge what lies in front of {person} ({detail})"
+            return f"Tangy did not judge the card in front of {person} ({detail})"
         case "robot frozen":
             return f"the robot process was frozen for {detail} s"
         case "program frozen":
@@ -91,8 +91,8 @@ def action_words(noted: Noted, name: Name) -> str:
             assert_never(forgotten)
 
 
-def _of(person: str) -> str:
-    return f" of {person}" if person else ""
+def _card(number: str, person: str) -> str:
+    return f"{person}'s card {number}" if person else f"card {number}"
 
 
 def _named(words: str, name: Name) -> str:

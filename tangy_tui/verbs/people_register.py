@@ -16,6 +16,7 @@ from tangy_tui.text.register import (
     back_words,
     guest_added_words,
     not_archived,
+    one_name,
 )
 from tangy_tui.verbs.common import REGISTERED, Data, Json, print_json
 from tangy_tui.verbs.opening import open_workspace
@@ -23,7 +24,7 @@ from tangy_tui.verbs.opening import open_workspace
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
 
-Name = Annotated[str, typer.Argument(help="The name of the person.")]
+Name = Annotated[list[str], typer.Argument(metavar="NAME", help="The name of the person.")]
 Guest = Annotated[
     bool, typer.Option("--guest", help="Only for today: Tangy forgets the name tomorrow.")
 ]
@@ -37,8 +38,10 @@ def people_add(name: Name, guest: Guest = False, data: Data = None, as_json: Jso
     """
     from tangy_tui.app.joining import let_join
 
+    if len(name) > 1:
+        raise TangyError(plain(one_name(name)))
     with open_workspace(data, DEFAULT_ACTIVITY, REGISTERED) as workspace:
-        id = let_join(workspace, name, guest=guest)
+        id = let_join(workspace, name[0], guest=guest)
         words = guest_added_words if guest else added_words
         _told(workspace, id, words(workspace.name(id), id), as_json)
 

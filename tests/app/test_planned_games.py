@@ -160,10 +160,10 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
 
     pace = f"the pace was set to {planned.world.pace:g} s"
     assert [what for _, _, what in staff_rows([replay], name)] == [
-        pace, "help was called for Rosa"
+        pace, "Tangy was told that Rosa asks for help"
     ]  # fmt: skip
     (told,) = moment_lines(replay.moments[-1], True, None, name)
-    assert "help was called for Rosa" in told
+    assert "Tangy was told that Rosa asks for help" in told
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

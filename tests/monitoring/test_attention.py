@@ -170,14 +170,14 @@ def test_the_log_lists_absent_people_of_a_game(workspace: Workspace, learnt: Pol
 def test_what_tangy_hears_is_not_told_as_done_by_staff() -> None:
     rosa = {"user1": "Rosa"}.__getitem__
     heard = Noted("heard", "Ada", person="user1", detail="honey")
-    assert action_line(heard, rosa) == "Tangy heard of Rosa: honey."
+    assert action_line(heard, rosa) == "Tangy heard from Rosa: honey."
     told = Noted("told", "Ada", person="user1", detail="honey")
     assert action_line(told, rosa).endswith(", by Ada.")
 
 
 def test_names_replace_ids_next_to_any_punctuation() -> None:
     told = Noted("told", "Ada", person="user1", detail="tired")
-    assert action_words(told, {"user1": "Rosa"}.__getitem__) == "Tangy was told of Rosa: tired"
+    assert action_words(told, {"user1": "Rosa"}.__getitem__) == "Tangy was told about Rosa: tired"
     older = Noted("noted", "Ada", detail="staff told of user1: tired; xuser1 is nobody")
     said = action_words(older, lambda person: {"user1": "Rosa"}.get(person, person))
     assert said == "staff told of Rosa: tired; xuser1 is nobody"

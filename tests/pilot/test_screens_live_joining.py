@@ -86,7 +86,7 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         await pilot.press("enter")
         await until_shown(pilot, lambda: "Where does Berta sit?" in pilot.text())
         await pilot.press("down", "enter")
-        await until_shown(pilot, lambda: "Berta takes part from now on." in pilot.text())
+        await until_shown(pilot, lambda: "Berta has joined." in pilot.text())
         assert live(pilot) is not first
         assert robot.off == 1 and robot.groups[1] == (*robot.groups[0][:3], "user5", "user4")
         assert workspace.name("user5") == "Berta"
@@ -191,5 +191,5 @@ async def test_a_question_that_is_open_when_somebody_joins_is_answered_first(
             did = [event.record.did for event in workspace.store.events(StaffAction)]
             assert did == ["paused", "came", "ended"]
         else:
-            await until_shown(pilot, lambda: "Berta takes part from now on." in pilot.text())
+            await until_shown(pilot, lambda: "Berta has joined." in pilot.text())
             assert len(robot.groups) == 2

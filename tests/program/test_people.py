@@ -294,3 +294,14 @@ def test_past_times_are_worded() -> None:
     }  # fmt: skip
     assert {days: ago(now - timedelta(days=days), now) for days in said} == said
     assert ago(now + timedelta(hours=3), now) == "today", "a clock may have been set back"
+
+
+def test_several_names_at_once_are_refused_with_what_to_type(
+    people: Callable[..., CompletedProcess[str]],
+) -> None:
+    before = document(people("list", "--json"))
+    done = people("add", "Anna", "Bert")
+    assert done.returncode == 2
+    assert "tangy people add Anna" in done.stderr and '"Anna Bert"' in done.stderr
+    assert document(people("list", "--json")) == before
+    assert document(people("add", "Anna Bert", "--json"))["name"] == "Anna Bert"

@@ -65,7 +65,9 @@ def test_the_only_strategy_of_an_activity_is_never_settled(
     noted: Callable[..., Record],
 ) -> None:
     record = noted({"quiet": (8, 1)}, strategies=("quiet",))
-    assert sentence(record).startswith("quiet is the only strategy for Rosa: 8 of 9, last seen")
+    assert sentence(record).startswith(
+        "Tangy has only one way of asking Rosa: it worked 8 of 9 times, last seen"
+    )
     assert record.settled is None
 
 

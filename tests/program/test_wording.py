@@ -14,6 +14,7 @@ from tangy_tui.monitoring.evidence import STATES, evidence_words
 from tangy_tui.text.drills import device_words
 from tangy_tui.text.faults import status_words
 from tangy_tui.text.situations import card_words, state_words, step_words
+from tests.support.declared import declared
 
 NUMBERS = tuple(range(1, 26))
 
@@ -75,6 +76,15 @@ def test_the_state_beside_a_person_describes_the_card(activity: Activity) -> Non
     assert told.startswith("Tangy is with Ken. Asking for help: Ken. ")
     assert "A called number is not marked." in told
     assert told.endswith("Wrong: B-1. Missed: B-2, B-3.")
+
+
+def test_the_state_of_a_game_by_facts_uses_the_words_for_its_facts() -> None:
+    trivia = declared("trivia")
+    waiting = next(s for s in trivia.situations if "under 20 s" in trivia.in_words(s))
+    asked = state(waiting)._replace(whom=(("whose turn", "user1"),))
+    said = state_words(trivia, asked, scene(), name)
+    assert "It is Rosa's turn. For under 20 s, no hint yet." in said
+    assert "<" not in said and " is no" not in said
 
 
 def test_a_correct_card_needs_no_words(activity: Activity) -> None:

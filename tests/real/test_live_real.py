@@ -217,7 +217,7 @@ def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
         input="\n".join(lines), capture_output=True, text=True, timeout=240,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    joined, resumed = done.stdout.split("Berta takes part from now on.")
+    joined, resumed = done.stdout.split("Berta has joined.")
     assert "Berta joins: seat 5." in joined and "is paused" not in joined
     assert " call number" in resumed and "You ended the game." in resumed
     assert f"tangy report --data {folder}" in " ".join(resumed.split())
