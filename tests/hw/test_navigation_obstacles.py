@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import pi
 
 import numpy as np
 import pytest
 
 from tangy_hw.device_protocols import STILL, Pose
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import seat_feet, table_legs, with_feet
+from tangy_hw.navigation.poses import IDENTITY
+from tangy_hw.navigation.surroundings import Surroundings
 from tests.bench.people_drives import MAP, ROOM, drives
 from tests.bench.people_simulation import Drive, Person
 from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
+from tests.hw.raycast import look, room_sides
+
+LEGS = [(x / 10, 2.7, x / 10 + 0.15, 2.85) for x in range(0, 100, 3)]
 
 
 class TestObstacles:
@@ -47,13 +55,42 @@ class TestObstacles:
         robot, goal = DrivenRobot(), at_seat(3)
         robot.navigator.go(goal)
         robot.run(2)
-        robot.boxes += [(x / 10, 2.7, x / 10 + 0.15, 2.85) for x in range(0, 100, 3)]  # legs
+        robot.boxes += LEGS
         assert robot.run(30, lambda: robot.navigator.state == "blocked")
         with monkeypatch.context() as jumping:
             jumping.setattr("tangy_hw.navigation.surroundings.WALKS", -1.0)
             assert not robot.navigator.finds_way(goal)
         robot.boxes.clear()
         assert robot.run(5, lambda: robot.navigator.finds_way(goal))
+
+    @pytest.mark.slow
+    @pytest.mark.parametrize("seed", [228, 231, 244])
+    def test_a_robot_gives_up_soon_before_a_row_of_legs(self, seed: int) -> None:
+        """With these seeds it drove up and down before the row for a minute."""
+        robot = DrivenRobot(seed=seed)
+        robot.navigator.go(at_seat(3))
+        robot.run(2)
+        robot.boxes += LEGS
+        assert robot.run(18, lambda: robot.navigator.state == "blocked") and not robot.touched
+
+    def test_what_stays_at_its_place_does_not_go_with_a_walker(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("tangy_hw.navigation.surroundings.WALKS", -1.0)  # all seem to walk
+        around = Surroundings(MAP, IDENTITY, MotionLimits())
+        here = Estimate(Pose(6.4, 1.2, pi / 2), np.zeros((3, 3)), 0.1, 1.0, 300)
+        scan, seen = look(room_sides(ROOM, CHAIR), here.pose), []
+        for _ in range(12):
+            around.see(here, here.pose, scan, 0.4)
+            seen.append(len(around.standing))
+        assert seen[:8] == [0] * 8 and seen[-1] == len(around.points) > 0
+
+    def test_what_was_gone_in_the_meantime_is_seen_anew(self) -> None:
+        obstacles, here = Obstacles(MAP), Pose(6.4, 1.2, pi / 2)
+        chair, empty = (look(room_sides(ROOM, *boxes), here) for boxes in ([CHAIR], []))
+        for scan in [chair] * 10 + [empty] * 10 + [chair] * 4:
+            obstacles.see(here, scan, 0.5)
+        assert obstacles.seconds.max() == pytest.approx(1.5, abs=0.01)
 
     @pytest.mark.slow
     def test_a_robot_enclosed_by_chairs_reports_no_path(self) -> None:

@@ -37,10 +37,13 @@ class Obstacles:
         self._new = map_.seen_distance > np.where(map_.feet, FIDGETING, OFF)
         self._hits = np.zeros(map_.shape, dtype=np.int16)
         self._age = np.zeros(map_.shape, dtype=np.float32)
+        self._first = np.zeros(map_.shape, dtype=np.float32)  # when its first scan hit the cell
+        self._clock = 0.0
 
     def see(self, pose: Pose, scan: Scan, dt: float) -> None:
         """Add a scan from a pose, `dt` s after the previous one."""
         there = self._hits > 0
+        self._clock += dt
         if there.any():
             self._age[there] += dt
             self._clear(pose, scan)
@@ -49,6 +52,7 @@ class Obstacles:
         hit = np.zeros(self._map.shape, dtype=np.bool_)
         hit[rows, columns] = True
         hit &= self._new
+        self._first[hit & (self._hits == 0)] = self._clock
         self._hits[hit] = np.minimum(self._hits[hit] + 1, 20)
         self._age[hit] = 0.0
 
@@ -91,6 +95,11 @@ class Obstacles:
         rows, columns = np.nonzero(self._hits >= SURE)
         middles = np.column_stack((columns + 0.5, rows + 0.5))
         return middles * self._map.resolution + self._map.origin
+
+    @property
+    def seconds(self) -> Floats:
+        """Seconds since each of the `points` (n,) was first seen, without being gone since."""
+        return np.asarray(self._clock - self._first[self._hits >= SURE])
 
     def forget(self) -> None:
         """Forget all obstacles, for example if the estimated pose was wrong."""

@@ -23,6 +23,7 @@ BlockingPerson = Literal["", "walking", "standing"]
 SURE = 0.3  # metres of pose spread up to which points become obstacles
 WALKS = 0.25  # m/s above which a track counts as walking
 WALKERS = 0.5  # metres around a walking person within which points belong to them
+STAYS = 3.0  # seconds after which a point belongs to nobody who walks
 CREEPS = Twist(0.02, 0.05)  # m/s and rad/s: people do not see a robot move that is slower than both
 AHEAD = (0.0, 0.7, 1.4, 2.1)  # seconds ahead for which paths avoid walkers
 
@@ -74,13 +75,17 @@ class Surroundings:
 
     @property
     def standing(self) -> Floats:
-        """Points of obstacles (n, 2) without those of walking people."""
+        """Points of obstacles (n, 2) without those of walking people.
+
+        What has been there for `STAYS` remains: a track that takes one leg of several for another
+        seems to walk, and the robot would plan through legs that stand.
+        """
         points, walkers = self.points, self._walkers
         if not len(points) or not walkers:
             return points
         at = transform_points(np.array([(one.x, one.y) for one in walkers]), self._pose)
         apart = ((points[:, None] - at[None]) ** 2).sum(axis=2).min(axis=1)
-        return np.asarray(points[apart > WALKERS**2])
+        return np.asarray(points[(apart > WALKERS**2) | (self._obstacles.seconds > STAYS)])
 
     @property
     def walking(self) -> Floats:
