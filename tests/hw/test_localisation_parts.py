@@ -44,6 +44,16 @@ class TestParticles:
                 assert after[:2] == pytest.approx(there[:2], abs=1e-9)
             assert abs(wrap(float(after[2]) - there.heading)) < 1e-9
 
+    def test_the_likeliest_cluster_is_the_same_on_a_map_of_any_size(self) -> None:
+        rng = np.random.default_rng(5)
+        one, other = (around(Pose(x, 1, 3), (0.1, 0.1, 0.1), 40, rng) for x in (1, 8))
+        weights = np.repeat([0.4, 0.6, 0.0], [40, 40, 1])
+        found = [
+            likeliest(np.vstack((one, other, [(far, far, 0)])), weights) for far in (9.0, 900.0)
+        ]
+        assert found[0][0] == found[1][0]
+        assert found[0][0].x == pytest.approx(8, abs=0.1)
+
     @pytest.mark.parametrize("step", [Pose(2.0, 0, 0), Pose(0, 0, 2.0)])
     def test_one_long_step_adds_no_more_uncertainty_than_its_short_steps(self, step: Pose) -> None:
         rng = np.random.default_rng(2)
@@ -130,14 +140,32 @@ class TestField:
 
 
 class TestSearch:
+    def test_random_places_cover_the_whole_floor_again_and_again(self) -> None:
+        search = Search(MAP, LikelihoodField(MAP), np.random.default_rng(0))
+        free = len(MAP.free_points())
+        drawn = search.anywhere(2 * free)
+        assert len(set(map(complex, *drawn.T[:2]))) == free
+        assert drawn[:, 2].min() < -3.1 and drawn[:, 2].max() > 3.1
+
+    @pytest.mark.parametrize("coarse", [2, 3, 4])
+    def test_a_coarse_field_scores_poses_nearly_like_a_fine_one(self, coarse: int) -> None:
+        poses = Search(MAP, LikelihoodField(MAP), np.random.default_rng(0)).anywhere(500)
+        points = thin(look(SIDES, START), 20.0)
+        fine = LikelihoodField(MAP, 0.8).scores(poses, points)
+        rough = LikelihoodField(MAP, 0.8, coarse).scores(poses, points)
+        assert np.abs(fine - rough).mean() < 0.02
+
     @pytest.mark.parametrize("turn", [-1.4, 1.4, 3.0])
     def test_a_missed_turn_is_found_in_few_tries(self, turn: float) -> None:
-        field, rng = LikelihoodField(MAP), np.random.default_rng(0)
-        points = thin(look(SIDES, START), 20.0)
+        search = Search(MAP, LikelihoodField(MAP), np.random.default_rng(0))
+        points, found = thin(look(SIDES, START), 20.0), 0
         last = START._replace(heading=wrap(START.heading + turn))
-        poses, scores = Search(MAP, field, rng).places(points, 32, 600, last)
-        x, y, heading = poses[scores.argmax()]
-        assert hypot(x - START.x, y - START.y) < 0.1 and abs(wrap(heading - START.heading)) < 0.1
+        for _ in range(12):
+            poses, scores = search.places(points, 32, 600, last)
+            x, y, heading = poses[scores.argmax()]
+            turned = abs(wrap(heading - START.heading))
+            found += hypot(x - START.x, y - START.y) < 0.1 and turned < 0.1
+        assert found >= 9
 
     def test_the_true_pose_is_among_the_best_ones_anywhere_in_the_room(self) -> None:
         field, rng = LikelihoodField(MAP), np.random.default_rng(0)

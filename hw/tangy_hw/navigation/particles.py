@@ -60,13 +60,6 @@ def around(
     return drawn
 
 
-def anywhere(points: Floats, resolution: float, count: int, rng: Generator) -> Floats:
-    """Draw particles evenly over cells (centres `points`, (n, 2), in m), with any heading."""
-    chosen = points[rng.integers(len(points), size=count)]
-    chosen = chosen + rng.uniform(-resolution / 2, resolution / 2, (count, 2))
-    return np.column_stack((chosen, rng.uniform(-pi, pi, count)))
-
-
 def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
     cells = np.floor(particles / (width, width, angle)).astype(np.int64)
     cells -= cells.min(axis=0)
@@ -90,7 +83,7 @@ def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> 
         return particles[:0]
     at = (np.arange(count) + rng.random()) / count
     chosen = np.searchsorted(np.cumsum(weights), at)
-    return particles[np.minimum(chosen, len(particles) - 1)]
+    return particles.take(np.minimum(chosen, len(particles) - 1), axis=0)
 
 
 def mean(particles: Floats, weights: Floats) -> Pose:
@@ -116,8 +109,8 @@ def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
     inside = bins == np.argmax(np.bincount(bins, weights))
     guess = mean(particles[inside], weights[inside])
     for _ in range(2):
-        inside = near(particles, guess)
-        if not inside.any():
+        before, inside = inside, near(particles, guess)
+        if not inside.any() or np.array_equal(before, inside):
             break
         guess = mean(particles[inside], weights[inside])
     offs = particles[inside] - np.asarray(guess)

@@ -17,10 +17,11 @@ from numpy.random import Generator
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.likelihood import LikelihoodField, evenly
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.particles import anywhere, around
+from tangy_hw.navigation.particles import around
 from tangy_hw.navigation.poses import IDENTITY, Floats, wrap
 
 BROAD, MIDDLE = 0.8, 0.3  # metres: sigmas of the broader fields
+BROAD_CELLS, MIDDLE_CELLS = 4, 2  # cells of the map, in a row, that are one cell of these fields
 GLANCED, GUESSED, LOOKED = 20, 30, 60  # beams used in the broad, the middle and the fine field
 GUESSES, CHOICES = 20, 65  # one of so many tried poses is refined in the middle and the fine field
 SHARE_NEAR = 0.2  # share of the poses that are tried near the last estimate
@@ -51,10 +52,10 @@ class Search:
             rng: the random generator.
         """
         self._fine = field
-        self._middle = LikelihoodField(map_, MIDDLE)
-        self._broad = LikelihoodField(map_, BROAD)
-        self._free = map_.free_points()
-        self._resolution = map_.resolution
+        self._middle = LikelihoodField(map_, MIDDLE, MIDDLE_CELLS)
+        self._broad = LikelihoodField(map_, BROAD, BROAD_CELLS)
+        # in random order, so that neighbours in the list are places anywhere on the floor
+        self._free = rng.permutation(map_.free_points())
         self._rng = rng
 
     def places(
@@ -70,7 +71,7 @@ class Search:
                 with any heading, as if the wheels had missed a turn.
         """
         near = around(last or IDENTITY, NEAR, int(SHARE_NEAR * tried) if last else 0, self._rng)
-        far = anywhere(self._free, self._resolution, tried - len(near), self._rng)
+        far = self.anywhere(tried - len(near))
         poses = np.vstack((near, far))
         glance, guess, look = (evenly(points, beams) for beams in (GLANCED, GUESSED, LOOKED))
         scores = self._broad.scores(poses, glance)
@@ -85,7 +86,12 @@ class Search:
 
     def anywhere(self, count: int) -> Floats:
         """Return random poses (count, 3) on the free floor."""
-        return anywhere(self._free, self._resolution, count, self._rng)
+        first = int(self._rng.integers(len(self._free)))
+        places = self._free[first : first + count]
+        if len(places) < count:
+            chosen = np.arange(first, first + count)
+            places = self._free.take(chosen, axis=0, mode="wrap")
+        return np.column_stack((places, self._rng.uniform(-pi, pi, count)))
 
 
 def nudged(
@@ -93,8 +99,11 @@ def nudged(
 ) -> tuple[Floats, Floats]:
     """Return the best of random poses around each of the poses (n, 3), or itself; with scores."""
     deviations = nudges.metres, nudges.metres, nudges.radians
-    tried = poses[:, None] + rng.standard_normal((len(poses), nudges.each, 3)) * deviations
-    tried = np.concatenate((poses[:, None], tried), axis=1)
+    tried = np.empty((len(poses), nudges.each + 1, 3))
+    tried[:, 0] = poses
+    offs = rng.standard_normal((len(poses), nudges.each, 3))
+    offs *= deviations
+    np.add(poses[:, None], offs, out=tried[:, 1:])
     fits = field.scores(tried.reshape(-1, 3), points).reshape(len(poses), nudges.each + 1)
     rows, best = np.arange(len(poses)), fits.argmax(axis=1)
     chosen = tried[rows, best]
@@ -106,4 +115,4 @@ def _best(poses: Floats, scores: Floats, count: int) -> Floats:
     """Return the `count` poses with the highest scores."""
     if count >= len(poses):
         return poses
-    return np.asarray(poses[np.argpartition(-scores, count)[:count]])
+    return poses.take(np.argpartition(-scores, count)[:count], axis=0)
