@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.navigation.likelihood import IN_CACHE, LikelihoodField, thin
+from tangy_hw.navigation.localisation import LEAD
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
 from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
-from tangy_hw.navigation.recent_scans import Comparison, RecentScans
+from tangy_hw.navigation.recent_scans import MANY, Comparison, RecentScans
 from tangy_hw.navigation.scan_matching import Reference
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_profiles.room import load_room
@@ -183,16 +184,18 @@ class TestRecentScans:
     OPPOSITE = Pose(ROOM.width, ROOM.depth, pi)  # turned by half, the walls look the same
 
     def compared(
-        self, steps: int, *, swapped: bool = False, elsewhere: float = 0.9
+        self, steps: int, *, swapped: bool = False, elsewhere: float = 0.9, hidden: bool = False
     ) -> tuple[Comparison, Pose, Pose]:
         """Drive; return the comparison, the true pose, and the opposite one.
 
-        A search gives the score `elsewhere` to the place with which the pose is compared.
+        A search gives the score `elsewhere` to the place with which the pose is compared. If
+        part of the room is `hidden`, one beam of four ends halfway.
         """
         rng = np.random.default_rng(3)
         recent, true, wheels = RecentScans(LikelihoodField(MAP), rng), START, Wheels(rng)
         for number in range(steps):
             points = thin(look(SIDES, true, rng), 20.0)
+            points[::4] *= 0.5 if hidden else 1.0
             opposite = compose(self.OPPOSITE, true)
             here, other = (opposite, true) if swapped else (true, opposite)
             recent.note(wheels.pose, points, np.array([other]), np.array([elsewhere]))
@@ -215,6 +218,12 @@ class TestRecentScans:
     def test_scans_that_each_fit_better_somewhere_name_no_better_place(self) -> None:
         (lead, rival, over_rival), _, _ = self.compared(FEWEST_SCANS, elsewhere=1.0)
         assert lead < 0.0 < 0.1 < over_rival and rival is not None
+
+    def test_a_place_where_few_scans_fit_poorly_is_not_believed(self) -> None:
+        for steps in (FEWEST_SCANS, MANY - 1):
+            found, _, _ = self.compared(steps, elsewhere=0.1, hidden=True)
+            assert found.lead == 0.0 and found.over_rival > LEAD
+        assert self.compared(MANY, elsewhere=0.1, hidden=True)[0].lead > LEAD
 
     def test_few_scans_do_not_tell_two_places_apart(self) -> None:
         found, _, _ = self.compared(FEWEST_SCANS - 1)

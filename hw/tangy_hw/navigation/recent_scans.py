@@ -26,6 +26,8 @@ PLACES = 16  # other places that are followed
 ELSEWHERE = 0.6  # metres or radians between two places that contradict each other
 ALONG = Nudges(8, 0.08, 0.05)  # for a place that is followed
 BY_CHANCE = 0.03  # by which each scan for itself may fit better elsewhere than at the right place
+POOR = -0.15  # mean logarithm of a scan's fit below which the right place may not be among them
+MANY = 10  # scans from which a place with such fits may be believed all the same
 NOWHERE, NOTHING = np.zeros((0, 3)), np.zeros(0)
 BACK = (Nudges(12, 0.1, 0.08), Nudges(12, 0.03, 0.025))  # for a pose that is followed back
 
@@ -85,7 +87,8 @@ class RecentScans:
         The lead is by how much the scans support the pose more: the sum over the scans of the
         differences between the logarithms of the fits. It is `inf` if they fit nowhere else, and
         `-inf` while they are too few to say. It may be negative without a better place: each scan
-        for itself may fit better somewhere else.
+        for itself may fit better somewhere else. While few scans fit, and
+        poorly, it is not positive.
 
         Args:
             pose: the pose that may be believed, in m and rad.
@@ -108,6 +111,8 @@ class RecentScans:
             anywhere += best - BY_CHANCE
         rival = 1 + int(support[1:].argmax())
         lead, over_rival = support[0] - max(support[rival], anywhere), support[0] - support[rival]
+        if support[0] < POOR * len(self._kept) and len(self._kept) < MANY:
+            lead = min(lead, 0.0)
         return Comparison(float(lead), Pose(*poses[rival]), float(over_rival))
 
     def _moved(self, poses: Floats, start: Pose, end: Pose) -> Floats:
