@@ -88,7 +88,7 @@ class WatchingLines:
         if self._as_json:
             self._json({"kind": "view", **encode(view)})
         else:
-            self._write(plain(f"-- {text.driver_words(view)}: {text.PHASES[view.phase]}"))
+            self._write(plain(text.phase_line(view)))
 
     def _json(self, said: object) -> None:
         self._write(json.dumps(said, ensure_ascii=False))

@@ -8,7 +8,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
-from tangy_tui.text.situations import Name
+from tangy_tui.text.faults import status_words
+from tangy_tui.text.situations import OVER_NOW, Name
 from tangy_tui.text.staff_view import Fact, lasting_words, time_facts, time_words
 from tangy_tui.text.times import local_now
 
@@ -25,9 +26,9 @@ PHASES: dict[Phase, str] = {
     "running": "running",
     "paused": "paused",
     "stopped": "STOPPED",
-    "asking": "Tangy asks",
+    "asking": "Tangy asks staff",
     "halted": "HALTED",
-    "staff": "staff drive",
+    "staff": "staff lead Tangy",
 }
 
 LAST_CALLS = 5
@@ -69,6 +70,33 @@ def driver_words(view: GameView) -> str:
     return f"{view.driver} runs the game, {WORLDS[view.world]}"
 
 
+def robot_words(view: GameView) -> str:
+    """Tell the state of the robot as the console that runs the game does: a STOP comes first."""
+    halted = view.robot == "HALTED"
+    if view.phase == "idle":  # what a device does after the game concerns nobody
+        return f"WARN: {view.cause}, not cleared" if halted else "OK"
+    words = status_words((view.robot, view.cause))
+    if view.phase == "stopped":
+        return f"{PHASES['stopped']}, {words}" if halted else PHASES["stopped"]
+    return words
+
+
+def stage_words(view: GameView) -> str:
+    """Tell why Tangy does nothing now; "" while it plays, or if the robot's state tells it."""
+    if view.phase == "idle":
+        return OVER_NOW
+    return PHASES[view.phase] if view.phase in ("paused", "asking", "staff") else ""
+
+
+def phase_line(view: GameView) -> str:
+    """Tell that the game has another phase now, or the robot another state."""
+    stage, robot = stage_words(view), robot_words(view)
+    parts = [stage or PHASES["running"]] if view.phase not in ("stopped", "halted") else []
+    if robot != "OK":
+        parts.append(robot)
+    return f"-- {driver_words(view)}: {', '.join(parts)}"
+
+
 def waiting_words(view: GameView, name: Name) -> str:
     """Tell who waits for help, and for how long; "" if nobody does."""
     waits = {one.id: one.waits for one in view.people if one.waits is not None}
@@ -93,11 +121,9 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
     """Describe the state of a game in lines."""
     if view is None:
         return [NO_GAME]
-    lines = [
-        f"{driver_words(view)}. Game {view.number}, step {view.step}: {PHASES[view.phase]}, "
-        f"robot {view.robot}{f' ({view.cause})' if view.cause else ''}."
-    ]
-    return [*lines, *now_lines(view, activity, name)]
+    phase = stage_words(view) or PHASES[view.phase]
+    where = f"Game {view.number}, step {view.step}: {phase}, robot {robot_words(view)}."
+    return [f"{driver_words(view)}. {where}", *now_lines(view, activity, name)]
 
 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:

@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
+from tangy_tui.app.game_commands import EndGame, GameCommand, Pause, Phase, TakeOver
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.game_view import view_of
 from tangy_tui.app.joining import let_join
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
-from tangy_tui.text.watching import NO_GAME
+from tangy_tui.text.watching import NO_GAME, PHASES, robot_words
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.pilot.conftest import LARGE, SMALL, Run
 from tests.support.waiting import until, until_shown
+
+STAGES = {**PHASES, "idle": OVER_NOW}
 
 
 @pytest.fixture
@@ -103,6 +109,33 @@ async def test_stop_stops_the_robot_and_names_who_did_it(
         await until(lambda: control.phase == "stopped")
         await until(lambda: screen.query_one(StatusLine).status.alarm)
     assert [event.record.by for event in workspace.store.events(StaffAction)] == ["Bea"]
+
+
+@pytest.mark.parametrize(
+    ("command", "phase"), [(Pause(), "paused"), (TakeOver(), "staff"), (EndGame(), "idle")]
+)
+async def test_the_status_line_tells_why_tangy_does_nothing(
+    control: GameController, screen: WatchScreen, run: Run, command: GameCommand, phase: Phase
+) -> None:
+    async with run(screen, size=SMALL) as pilot:
+        status = screen.query_one(StatusLine)
+        await until(lambda: status.status.step == 5)
+        assert status.status.stage == ""
+        control.apply(command)
+        await until(lambda: status.status.stage)
+        assert control.phase == phase
+        assert (status.status.stage, status.status.robot) == (STAGES[phase], "OK")
+        assert STAGES[phase] in pilot.text()
+
+
+def test_a_stop_does_not_hide_a_fault_that_halts_the_robot(control: GameController) -> None:
+    view = view_of(control)
+    assert view is not None
+    halted = replace(view, phase="stopped", robot="HALTED", cause="battery")
+    assert robot_words(halted) == "STOPPED, HALTED: battery"
+    assert robot_words(replace(halted, robot="WARN")) == "STOPPED"
+    assert "battery" in robot_words(replace(halted, phase="halted"))
+    assert "HALTED" not in robot_words(replace(halted, phase="idle"))
 
 
 async def test_leaving_stops_nothing(

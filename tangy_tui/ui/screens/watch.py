@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import ClassVar
 
 from textual.app import ComposeResult
@@ -21,6 +20,7 @@ from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted, Unclear
 from tangy_tui.text import watching as text
+from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
@@ -192,17 +192,18 @@ class WatchScreen(TangyScreen[None]):
         view = self._view if self._there else None
         line = self.query_one(StatusLine)
         if view is None:
-            line.show(replace(line.status, robot="", note="", alarm=False, step=None, game=None))
+            line.show(Status(mode="watch"))
             return
-        alarm = view.phase in ALARMS or view.robot not in ("OK", "WARN")
+        robot = text.robot_words(view)
         line.show(
             Status(
                 mode="watch",
-                robot=text.PHASES[view.phase] if view.phase in ALARMS else view.robot,
+                robot=robot,
+                stage=text.stage_words(view),
                 game=view.number,
                 step=view.step,
                 note=text.driver_words(view),
-                alarm=alarm,
+                alarm=robot != "OK" and not robot.startswith(WAITS),
             )
         )
 
