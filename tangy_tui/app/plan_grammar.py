@@ -23,7 +23,11 @@ CHECK = "check"
 """The word before a card's number in every activity; an activity may define another."""
 _PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
 _PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
-_MOVED = re.compile(r"(here|left) (.+)|(.+?) (is here|has come|left|has left)", re.I)
+_COMES = r"(?:is|has) (?:here|come|arrived)|is back|(?:has )?(?:came|come|arrived)(?: back| in)?"
+_GOES = r"(?:is|has) (?:gone|left)|left|leaves|went|goes|is (?:going|leaving|away|not here)"
+_MOVED = re.compile(
+    rf"(?:(here)|left) (.+)|(.+?) (?:({_COMES})|{_GOES})(?: now| too| again| home| away)?", re.I
+)
 _JOINS = re.compile(
     r"(?:(add|guest)(?: (.+?))?|(.+?) joins(?: in| us)?)"
     r"(?:,? (?:at|on|in|to) (?:(table) |seat |chair |place )(\d{1,2}))?",
@@ -58,14 +62,13 @@ def read_planned(
         guest = (joins[1] or "").casefold() == "guest"
         return Joins(joins[2] or joins[3] or "", guest, seat, table)
     if moved := _MOVED.fullmatch(said):
-        come = (moved[1] or moved[4]).casefold() in ("here", "is here", "has come")
         try:
             person = find_person(moved[2] or moved[3])
         except TangyError:
-            if moved[1] is None:  # it may be an answer in words
+            if moved[2] is None:  # it may be an answer in words
                 return None
             raise
-        return ComesIn(person) if come else GoesAway(person)
+        return ComesIn(person) if moved[1] or moved[4] else GoesAway(person)
     return None
 
 
