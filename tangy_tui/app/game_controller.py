@@ -95,6 +95,8 @@ class GameController(PausingGames):
         """Set when something changed, for the thread that waits to call `next`."""
         self.changed: Callable[[], object] = lambda: None
         """Called after each command, in the thread that carried it out."""
+        self.awake: Callable[[], bool] = lambda: True
+        """Returns False after the program was frozen; then no step is taken."""
         self.by = by
         self.robot = RobotControls(robot, self.note, lambda: self.stopped, paced=paced)
         self.plan = GamePlanControls(supervision, self.note, by)
@@ -177,7 +179,7 @@ class GameController(PausingGames):
                 asked: list[Event] = list(game.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER))
                 self.taking_over = False  # only now: an answer typed earlier finds the question
                 return asked
-            if not self._may_step():
+            if not (self._may_step() and self.awake()):
                 return []
             if self.single:
                 self.single, self.going = False, False

@@ -12,13 +12,14 @@ import queue
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import command_reader, nearest_command
+from tangy_tui.app.freeze_watch import FreezeWatch
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     CallExpert,
@@ -34,25 +35,23 @@ from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.answering import AnsweredQuestions
 from tangy_tui.console.confirming import ConfirmingStaff
+from tangy_tui.console.freezes import FreezeLines
 from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.console.inputs import ReadAhead, any_waits
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.console.script_waits import ScriptWaits
+from tangy_tui.console.telling import GameTelling
 from tangy_tui.console.typed_yes import TypedYes
-from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, ResumedGame, Taught
 from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.learning.verification import (
-    NotUnderstood,
     Reply,
     Say,
-    Verification,
     Verified,
 )
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
 from tangy_tui.text.calls import expert_line
-from tangy_tui.text.control import noted_words
-from tangy_tui.text.games import belief_lines, game_lines
+from tangy_tui.text.games import belief_lines
 from tangy_tui.text.questions import ANSWER_HELP
 from tangy_tui.text.situations import Name
 
@@ -77,6 +76,7 @@ class StaffLines:
         demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
         yes: TypedYes | None = None,
         before: StaffLines | None = None,
+        watch: FreezeWatch | None = None,
     ) -> None:
         """Connect staff to games.
 
@@ -91,21 +91,23 @@ class StaffLines:
             demonstrations: returns all demonstrations, to explain decisions.
             yes: parses a typed yes.
             before: the games that a person has joined, whose lines are still being read.
+            watch: detects that the program was frozen.
         """
         self._controller, self._name = controller, name
         self._game = controller.supervision
-        self._read, self._speed, self._also = read, speed, also
+        self._read, self._speed = read, speed
         self._yes = yes or TypedYes()
-        self._sure = ConfirmingStaff(controller, self._yes, self._write)
+        self._progress = ProgressLines(controller, name)
+        telling = self._telling = GameTelling(controller, name, write, self._progress, also)
+        telling.stopped = before is not None and before._telling.stopped
+        self._sure = ConfirmingStaff(controller, self._yes, telling.write)
+        self._freezes = FreezeLines(controller, self._sure, telling.write, watch)
         self._waits = ScriptWaits(controller, self._tell_progress)
         self._inquiries = Inquiries(controller, name, demonstrations)
-        self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, self._write)
+        self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, telling.write)
+        telling.verify = lambda said: self._questions.verify(said, self._typed)
         self._ahead: ReadAhead = ReadAhead(read) if before is None else before._ahead
-        self._writing = threading.Lock()
-        self._write_line = write
-        self._progress = ProgressLines(controller, name)
-        self._stopped: bool = before is not None and before._stopped
-        self._ended = self._by_turns = self._leaves = False  # leaves: while no game could begin
+        self._by_turns = self._leaves = False  # leaves: while no game could begin
         self.played = 0
         self._begun = threading.Event()
         self._tasks: queue.Queue[Task | None] = queue.Queue()
@@ -115,6 +117,7 @@ class StaffLines:
         """Play, up to a game that somebody joins; return whether none stopped early."""
         prepare()
         self._ahead.begin()
+        self._freezes.guard.keep_looking()
         working = threading.Thread(target=self._work_off, daemon=True)
         working.start()
         for _ in range(games):
@@ -150,16 +153,16 @@ class StaffLines:
         for _ in range(games):
             if self._left_uncleared():
                 break
-            self._tell(controller.begin())
+            self._telling.tell(controller.begin())
             while not self._game.over:
                 halted = self._game.halted is not None
                 if controller.phase == "running" or (expert if halted else scripted):
-                    self._tell(go_on_by_script(controller, expert=expert))
+                    self._telling.tell(go_on_by_script(controller, expert=expert))
                     continue
                 self._questions.prompt(self._typed)
                 line = None if scripted else self._read()
                 if line is None:
-                    self._tell(controller.give_up() or controller.apply(EndGame()))
+                    self._telling.tell(controller.give_up() or controller.apply(EndGame()))
                 else:
                     self._take(line.strip())
         return self._end()
@@ -167,12 +170,12 @@ class StaffLines:
     def _left_uncleared(self) -> bool:
         """Return whether an uncleared fault prevents another game, and tell so."""
         if (fault := self._game.halted) is not None:
-            self._write(staff_lines.not_begun(fault.name))
+            self._telling.write(staff_lines.not_begun(fault.name))
         return fault is not None
 
     def _end(self) -> bool:
-        self._write_all(belief_lines(self._game, self._name))
-        return not self._stopped
+        self._telling.write_all(belief_lines(self._game, self._name))
+        return not self._telling.stopped
 
     # ----------------------------------------------------------------------------- the game
 
@@ -181,59 +184,30 @@ class StaffLines:
         controller, game = self._controller, self._game
         while not (events := controller.begin()):  # staff stopped the robot between two games
             if self._ahead.ended or self._leaves:
-                self._write(staff_lines.NOBODY if self._ahead.ended else staff_lines.NOT_BEGUN)
-                self._stopped |= self._ahead.ended
+                self._telling.write(
+                    staff_lines.NOBODY if self._ahead.ended else staff_lines.NOT_BEGUN
+                )
+                self._telling.stopped |= self._ahead.ended
                 return
             controller.nudge.wait(LOOK_SECONDS)
-        self._tell(events)
+        self._telling.tell(events)
         self._begun.set()
         while not game.over:
             before = game.seconds
             try:
                 events = controller.next()
             except TangyError as error:  # logging failed, so pause
-                self._tell([*controller.apply(Pause()), StaffNote("cannot", str(error))])
+                self._telling.tell([*controller.apply(Pause()), StaffNote("cannot", str(error))])
                 continue
-            self._tell(events)
+            self._telling.tell(events)
             self._questions.prompt(self._typed)
             busy = self._tasks.unfinished_tasks
             if self._ahead.ended and not busy and controller.phase not in ("running", "idle"):
-                self._write(staff_lines.NOBODY)
-                self._tell(controller.give_up() or controller.apply(EndGame()))
+                self._telling.write(staff_lines.NOBODY)
+                self._telling.tell(controller.give_up() or controller.apply(EndGame()))
             passed = 0.0 if self._speed is None else (game.seconds - before) / self._speed
             if not game.over and (passed or not events):
                 controller.nudge.wait(passed or LOOK_SECONDS)
-
-    def _tell(self, told: Sequence[ControllerOutput]) -> None:
-        answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
-        events: list[Event] = []
-        for one in told:
-            if isinstance(one, StaffNote):
-                self._write(noted_words(one, self._name))
-            elif isinstance(one, Verification):
-                self._questions.verify(one, self._typed)
-                if isinstance(one, NotUnderstood):
-                    self._write(staff_lines.ANSWER_IN_WORDS)
-            else:
-                events.append(one)
-                broken_off = isinstance(one, GameEnded) and one.stopped is not None
-                self._stopped |= broken_off and not self._ended
-                on = self._controller.goes_on
-                lines = game_lines(one, self._game, self._name, answered, goes_on=on)
-                if isinstance(one, Acted):
-                    lines = self._progress.step(one, lines)
-                elif isinstance(one, ResumedGame):
-                    lines = [*lines, *self._progress.resumed()]
-                self._write_all(lines)
-        self._write_all(filter(None, self._also(events)))
-
-    def _write(self, line: str) -> None:
-        with self._writing:
-            self._write_line(line)
-
-    def _write_all(self, lines: Iterable[str]) -> None:
-        for line in lines:
-            self._write(line)
 
     # ----------------------------------------------------------------------------- the lines
 
@@ -264,7 +238,7 @@ class StaffLines:
                     self._ahead.lines.put(None)
                     time.sleep(LOOK_SECONDS)
                 elif self._controller.phase in ("idle", "running"):
-                    self._write(staff_lines.NO_MORE)
+                    self._telling.write(staff_lines.NO_MORE)
                 self._controller.nudge.set()
             elif (
                 self._sure.open
@@ -276,10 +250,11 @@ class StaffLines:
                 early.append(line.strip())
 
     def _tell_progress(self) -> None:
-        """Write where the robot drives, what it says, or its question about a card."""
-        self._write_all(self._progress.news())
+        """Write what Tangy does now, and what it asks about a card or after a freeze."""
+        self._freezes.ask(self._typed)
+        self._telling.write_all(self._progress.news())
         if self._ahead.ended and self._progress.asks:
-            self._tell([*self._controller.apply(EndGame())])
+            self._telling.tell([*self._controller.apply(EndGame())])
 
     def _is_due(self, line: str, early: deque[str]) -> bool:
         """Return whether to handle a line now: a game has begun, and no earlier line waits.
@@ -313,13 +288,13 @@ class StaffLines:
     def _work_off(self) -> None:
         """Carry out the queued commands, one after the other."""
         while (task := self._tasks.get()) is not None:
-            self._tell(task())
+            self._telling.tell(task())
             self._tasks.task_done()
 
     def _do_next(self, task: Task) -> None:
         """Do a task after those in the queue; at once if lines are read by turns."""
         if self._by_turns:
-            self._tell(task())
+            self._telling.tell(task())
         else:
             self._tasks.put(task)
 
@@ -331,11 +306,11 @@ class StaffLines:
     def _carry_out(self, command: GameCommand) -> None:
         """Carry out a command now, or queue it for its turn while lines are read."""
         if isinstance(command, CallExpert) and self._game.halted is not None:
-            self._write(expert_line(self._game))
-        self._ended |= isinstance(command, EndGame)
+            self._telling.write(expert_line(self._game))
+        self._telling.ended |= isinstance(command, EndGame)
         refused = self._controller.refuses(command)
         if refused or self._by_turns or isinstance(command, AT_ONCE):
-            self._tell([refused] if refused else self._controller.apply(command))
+            self._telling.tell([refused] if refused else self._controller.apply(command))
             return
         if isinstance(command, EndGame):
             self._controller.break_off()
@@ -348,7 +323,7 @@ class StaffLines:
         try:
             command = self._command(text)
         except TangyError as error:
-            self._write(str(error))
+            self._telling.write(str(error))
             return
         if isinstance(command, StopRobot):
             self._sure.drop()
@@ -366,21 +341,21 @@ class StaffLines:
         elif (reply := self._questions.answer(text)) is not None:
             self._take_reply(reply)
         elif (told := self._inquiries.lines(answer)) is not None:
-            self._write_all(told)
+            self._telling.write_all(told)
         elif controller.answers.verifying:
-            self._write(ANSWER_HELP)
+            self._telling.write(ANSWER_HELP)
         elif self._game.question is not None:
-            self._tell([controller.answers.say(Say(text))])
+            self._telling.tell([controller.answers.say(Say(text))])
         else:
-            self._write(plain(staff_lines.not_known(text[:60], nearest_command(text))))
+            self._telling.write(plain(staff_lines.not_known(text[:60], nearest_command(text))))
 
     def _take_reply(self, reply: ControllerOutput | Confirm | str) -> None:
         if isinstance(reply, str):
-            self._write(reply)
+            self._telling.write(reply)
         elif isinstance(reply, Confirm):
             self._carry_out(reply)
         else:
-            self._tell([reply])
+            self._telling.tell([reply])
             if isinstance(reply, Verified):
                 self._answer(reply)
 

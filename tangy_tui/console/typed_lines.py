@@ -10,6 +10,7 @@ import codecs
 import os
 import re
 import select
+import signal
 import sys
 import termios
 import threading
@@ -97,7 +98,7 @@ class TypedLines:
         self._decode = codecs.getincrementaldecoder("utf-8")("replace").decode
         self._drawing = threading.Lock()
         self._before = termios.tcgetattr(keys)
-        self._mode = threading.Lock()
+        self._mode = threading.RLock()  # `prepare` is also called by a signal
         self._given_back = False
         self._unseen, self._unseen_until = 0, 0.0  # questions that may not be on the screen yet
         self._is_answer: Callable[[str], bool] = lambda line: False
@@ -240,6 +241,21 @@ def typed_lines(print_line: Callable[[str], None]) -> Iterator[TypedLines | None
     lines = TypedLines(sys.stdin.fileno(), sys.stdout, print_line, dumb=dumb)
     lines.prepare()
     try:
-        yield lines
+        with at_continue(lines.prepare):
+            yield lines
     finally:
         lines.restore()
+
+
+@contextmanager
+def at_continue(prepare: Callable[[], object]) -> Iterator[None]:
+    """Prepare the terminal again when a stopped program goes on: the shell has changed its mode."""
+    try:
+        before = signal.signal(signal.SIGCONT, lambda number, frame: prepare())
+    except ValueError:  # signals reach only the main thread
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGCONT, before)

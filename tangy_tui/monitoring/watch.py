@@ -6,7 +6,7 @@ diagnosis becomes a fault, which `Recovery` handles.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import LEAVE_TO_STAFF, Evidence, FaultBook
@@ -35,6 +35,8 @@ class FaultWatch:
         self.book = book
         self.acted: dict[str, Acted] = {}
         """The behaviour after which a fault was detected, by fault id."""
+        self.awake: Callable[[], bool] = lambda: True
+        """Returns False after the program was frozen; then no device is judged."""
         self._game = game
         self._detector = detector
         self._recovery = recovery
@@ -56,7 +58,7 @@ class FaultWatch:
 
     def look(self) -> list[Event]:
         """Check the devices without acting, and return the new faults."""
-        if self._game.over:
+        if self._game.over or not self.awake():
             return []
         evidence = self.devices
         if evidence is self._seen:

@@ -9,13 +9,14 @@ DETAIL = (
     "check where the robot stands and how people are."
 )
 GO_ON, STAY = "go on", "stay paused"
+PAUSED = "The game is paused. Type: go on."
 
 
 def question(seconds: float) -> str:
     """Tell how many s the program was frozen, and ask whether to continue."""
-    return f"Tangy stood still for {length(seconds)}. Go on?"
+    return f"{stood_words(seconds)} Go on?"
 
 
-def told_words(seconds: float) -> str:
-    """Tell in a line how many s it was frozen, and how to continue."""
-    return f"Tangy stood still for {length(seconds)}. The game is paused. Type: go on."
+def stood_words(seconds: float) -> str:
+    """Tell for how many s it was frozen."""
+    return f"Tangy stood still for {length(seconds)}."

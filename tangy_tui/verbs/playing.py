@@ -204,7 +204,6 @@ def staff_lines(
         typed: the lines of a terminal.
         before: the games that a person has joined, whose lines are still being read.
     """
-    from tangy_tui.app.freeze_watch import FreezeGuard
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.console.inputs import is_typed, line_reader
@@ -212,7 +211,6 @@ def staff_lines(
     from tangy_tui.console.typed_yes import TypedYes
     from tangy_tui.interaction.feedback import void_last
     from tangy_tui.learning.library import read_library
-    from tangy_tui.text.freezes import told_words
     from tangy_tui.text.live_news import news_lines
     from tangy_tui.text.watching import stopped_by_guest
 
@@ -235,7 +233,6 @@ def staff_lines(
         typed.too_early = lambda: typed.write(TOO_EARLY)
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
     workspace.door.attach(control, lambda who: write(stopped_by_guest(who, control.by)))
-    FreezeGuard(control, lambda seconds: write(told_words(seconds))).keep_looking()
     return control, StaffLines(
         control,
         workspace.name,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
+import signal
 import termios
 import threading
 from collections.abc import Callable, Iterator
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterator
 import pyte
 import pytest
 
-from tangy_tui.console.typed_lines import LineEditor, TypedLines, cells_of
+from tangy_tui.console.typed_lines import LineEditor, TypedLines, at_continue, cells_of
 from tests.support.waiting import wait_until
 
 COLUMNS = 20
@@ -192,3 +193,12 @@ def test_a_terminal_that_never_replies_is_not_asked_again(
         desk.lines.ask_terminal()
         desk.type("y\r")
         wait_until(lambda wanted=number: desk.read == ["y\n"] * wanted)  # type: ignore[misc]
+
+
+def test_keys_are_not_echoed_after_a_stopped_program_goes_on(desk: Desk) -> None:
+    mode = termios.tcgetattr(desk.child)
+    mode[3] |= termios.ECHO | termios.ICANON  # as a shell leaves it
+    termios.tcsetattr(desk.child, termios.TCSANOW, mode)
+    with at_continue(desk.lines.prepare):
+        os.kill(os.getpid(), signal.SIGCONT)
+        assert not termios.tcgetattr(desk.child)[3] & (termios.ECHO | termios.ICANON)

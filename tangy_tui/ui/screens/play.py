@@ -267,7 +267,7 @@ class PlayScreen(PlayStaff):
             if not alone and not await self._voice.heard(self._speed, self.nudge):
                 continue
             before = supervision.seconds
-            events, rest = await self._beside(self._next), list[Event]()
+            events, rest = await self._beside(self.control.next), list[Event]()
             if not self.skipping and control.going:
                 events, rest = self._faults.parts(events)
             self._tell(events)

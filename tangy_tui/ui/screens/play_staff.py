@@ -40,7 +40,6 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
 from tangy_tui.learning.verification import Verified
-from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.confirmations import confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
@@ -70,7 +69,6 @@ class PlayStaff(PlayPanels):
         self._voice = GameVoice(workspace)
         self._learning = False
         self._pace_told: Timer | None = None
-        self._guard: FreezeGuard | None = None
         self.nudge = asyncio.Event()
         """Set when the game should no longer wait for a step's time."""
 
@@ -95,19 +93,12 @@ class PlayStaff(PlayPanels):
         self._workspace.door.attach(
             self.control, lambda who: loop.call_soon_threadsafe(stopped, who)
         )
-        self._guard = FreezeGuard(
-            self.control, lambda s: loop.call_soon_threadsafe(self._stood_still, s)
-        )
-        self.set_interval(LOOK_SECONDS, self._guard.look)
+        guard = FreezeGuard(self.control, lambda s: loop.call_soon_threadsafe(self._stood_still, s))
+        self.set_interval(LOOK_SECONDS, guard.look)
         if self.control.stopped_by:  # while the robot was switched on again
             stopped(self.control.stopped_by)
         elif self.control.stopped:
             self._show_stopped()
-
-    def _next(self) -> list[Event]:
-        """Carry out the next step, unless the program was just frozen."""
-        guard = self._guard
-        return [] if guard is not None and guard.look() else self.control.next()
 
     def _stood_still(self, seconds: float) -> None:
         """Ask whether to continue, after the program was frozen for some s."""

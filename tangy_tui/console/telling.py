@@ -1,0 +1,76 @@
+"""Writes the events of games, and the results of staff's commands, line by line."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Sequence
+
+from tangy_tui.app.game_commands import StaffNote
+from tangy_tui.app.game_controller import ControllerOutput, GameController
+from tangy_tui.console.in_progress import ProgressLines
+from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, ResumedGame, Taught
+from tangy_tui.learning.verification import NotUnderstood, Verification
+from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text import staff_lines
+from tangy_tui.text.control import noted_words
+from tangy_tui.text.games import game_lines
+from tangy_tui.text.situations import Name
+
+
+class GameTelling:
+    """Writes what happens in the games of a controller. Any thread may call it."""
+
+    def __init__(
+        self,
+        controller: GameController,
+        name: Name,
+        write: Callable[[str], None],
+        progress: ProgressLines,
+        also: Callable[[Sequence[Event]], Sequence[str]],
+    ) -> None:
+        """Write with `write`; see `StaffLines`. `progress` knows what was told before its step."""
+        self._controller, self._name = controller, name
+        self._progress, self._also = progress, also
+        self._writing = threading.Lock()
+        self._write_line = write
+        self.verify: Callable[[Verification], object] = lambda said: None
+        """Asks staff about what they said that Tangy should do."""
+        self.stopped = False
+        """Whether a game stopped early."""
+        self.ended = False
+        """Whether staff ended a game."""
+
+    def tell(self, told: Sequence[ControllerOutput]) -> None:
+        """Write the lines about some events and results."""
+        answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
+        game = self._controller.supervision
+        events: list[Event] = []
+        for one in told:
+            if isinstance(one, StaffNote):
+                self.write(noted_words(one, self._name))
+            elif isinstance(one, Verification):
+                self.verify(one)
+                if isinstance(one, NotUnderstood):
+                    self.write(staff_lines.ANSWER_IN_WORDS)
+            else:
+                events.append(one)
+                broken_off = isinstance(one, GameEnded) and one.stopped is not None
+                self.stopped |= broken_off and not self.ended
+                on = self._controller.goes_on
+                lines = game_lines(one, game, self._name, answered, goes_on=on)
+                if isinstance(one, Acted):
+                    lines = self._progress.step(one, lines)
+                elif isinstance(one, ResumedGame):
+                    lines = [*lines, *self._progress.resumed()]
+                self.write_all(lines)
+        self.write_all(filter(None, self._also(events)))
+
+    def write(self, line: str) -> None:
+        """Write a line."""
+        with self._writing:
+            self._write_line(line)
+
+    def write_all(self, lines: Iterable[str]) -> None:
+        """Write lines."""
+        for line in lines:
+            self.write(line)
