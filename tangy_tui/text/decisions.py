@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.declared.whom import addressee
 from tangy_tui.learning.policy import SURE
 from tangy_tui.text.activities import selector_words
-from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.numbers import counted, listed, often
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -23,7 +23,7 @@ def shown_here(seen: int, share: float) -> str:
     """Tell how often a behaviour was demonstrated, and its share of the votes if that is not 1."""
     if not seen:
         return f"a guess, {share:.0%} sure"
-    times = "once" if seen == 1 else f"{seen} times"
+    times = often(seen)
     return f"as shown {times}" if share >= 1 else f"as shown {times}, {share:.0%} sure"
 
 
@@ -39,7 +39,7 @@ def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -
     done = activity.behaviour_words(decision.behaviour)
     sentences = [f"Situation: {activity.in_words(why.situation)}."]
     teachers = dict.fromkeys(shown.teacher for shown in why.rests_on)
-    times = "once" if len(why.rests_on) == 1 else f"{len(why.rests_on)} times"
+    times = often(len(why.rests_on))
     if decision.contested:
         sentences.append(
             "Demonstrations disagree here, and nobody has said which is right yet. Tangy asks "

@@ -26,7 +26,7 @@ from tangy_tui.text.changes import changed_lines
 from tangy_tui.text.decisions import HOW_SURE, addressed_words, because_words, why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, of_times, often
 from tangy_tui.text.situations import Name, moment_words, once_words
 
 if TYPE_CHECKING:
@@ -137,8 +137,7 @@ def early_words(ended: GameEnded) -> str:
 
 def paused_lines(count: int, seconds: float) -> list[str]:
     """Tell how often the robot waited for late data, and for how many s, if it did."""
-    times = "once" if count == 1 else f"{count} times"
-    return [f"It waited for late data {times}, for {seconds:.1f} s in all."] if count else []
+    return [f"It waited for late data {often(count)}, for {seconds:.1f} s in all."] if count else []
 
 
 NEVER_ASKED = "Tangy has asked for nothing yet, so it does not know what works."
@@ -199,8 +198,8 @@ def stopped_words(reason: str, then: str) -> str:
 def response_words(response: Response, belief: Beta, name: Name) -> str:
     """Tell a person's response, and how often the strategy has worked."""
     what = "did it" if response.complied else "did it a little late"
-    worked = f"{response.strategy} has worked {belief.complied} of {belief.trials} times."
-    return f"{name(response.person)} {what}: {worked}"
+    worked = f"{response.strategy} has worked {of_times(belief.complied, belief.trials)}"
+    return f"{name(response.person)} {what}: {worked}."
 
 
 def begun_words(number: int) -> str:

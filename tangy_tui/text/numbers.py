@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+_OFTEN = {0: "never", 1: "once", 2: "twice"}
 _ORDINALS = {1: "first", 2: "second", 3: "third"}
 
 
@@ -16,6 +17,16 @@ def counted(number: int, noun: str, nouns: str = "") -> str:
         nouns: the plural, if it is not the singular with an "s".
     """
     return f"{number:,} {noun if number == 1 else nouns or noun + 's'}"
+
+
+def often(times: int) -> str:
+    """Tell how often something happened: "once", "twice", "3 times"; "never" for 0."""
+    return _OFTEN.get(times, f"{times:,} times")
+
+
+def of_times(part: int, times: int) -> str:
+    """Tell how often of how many times something happened: "1 of 1 time", "7 of 9 times"."""
+    return f"{part:,} of {counted(times, 'time')}"
 
 
 def ordinal(number: int) -> str:

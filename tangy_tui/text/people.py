@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_profiles.people_records import FeedbackGiven, ResponseVoided, StrategySwitched
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, of_times
 from tangy_tui.text.times import ago, on_day
 
 if TYPE_CHECKING:
@@ -61,7 +61,9 @@ def _only(record: Record) -> str:
         words = f"only {only} is switched on for {name}"
         return f"{words}: {tally(belief)}" if belief.trials else f"{words}: no response yet"
     words = f"Tangy has only one way of asking {name}"
-    return f"{words}: it worked {tally(belief)} times" if belief.trials else words
+    if not belief.trials:
+        return words
+    return f"{words}: it worked {of_times(belief.complied, belief.trials)}"
 
 
 def tally(belief: Beta) -> str:

@@ -321,7 +321,7 @@ def test_games_are_printed_step_by_step_with_responses_and_posteriors(
     supervision = workspace.supervision(policy, 3)
     said = play_by_turns(supervision, games=3, name=workspace.name, scripted=True)
     assert said[0] == "Game 1 begins."
-    assert said[1] == "1. the game has not begun -> greet everyone, as shown 2 times"
+    assert said[1] == "1. the game has not begun -> greet everyone, as shown twice"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
     late = " did it a little late, which does not count ("
     learnt = [line for line in said if " did it (" in line or late in line]

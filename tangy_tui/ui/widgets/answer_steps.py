@@ -10,7 +10,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.library_entries import Library
 from tangy_tui.text.conflicts import ANSWER_HELP
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import often
 from tangy_tui.text.times import local_time
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
@@ -47,7 +47,7 @@ class AnswerSteps(ChoiceList):
             f"{number} {clean(workspace.activity.behaviour_words(behaviour))}",
             ANSWER_HELP,
         )
-        self.border_subtitle = counted(len(steps), "time")
+        self.border_subtitle = often(len(steps))
         self._workspace = workspace
         self._steps = tuple(steps)
         self._library = library
