@@ -23,6 +23,14 @@ def goes_to_people(activity: Activity | None) -> bool:
     return any(effect.does == "go to whom" for effect in effects)
 
 
+def visiting(replays: Iterable[GameReplay]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the titles of the activities in which Tangy visits people, and of the others."""
+    titles = [(replay.title, goes_to_people(replay.activity)) for replay in replays]
+    goes = dict.fromkeys(title for title, visits in titles if visits)
+    stays = dict.fromkeys(title for title, visits in titles if not visits)
+    return tuple(goes), tuple(stays)
+
+
 @dataclass(slots=True)
 class Attention:
     """The attention to one person in one game or several.

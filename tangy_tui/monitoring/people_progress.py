@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from typing import Any
 
 from tangy_profiles.beliefs import Beliefs, Beta
-from tangy_profiles.persuading import PAPER
+from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.memory import PersonModel, PersonModels, counted, replayed
 from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.replay import GameReplay, activities_of
 
-RESULTS = (
-    ("complied", "did it"),
-    ("late", "did it late"),
-    ("refused", "would rather not"),
-    ("void", "void"),
-    ("awaited", "without an answer"),
-)
-"""Outcomes of a request: the counts of `Attempts`, and their words."""
+RESULTS = ("complied", "late", "refused", "void", "awaited")
+"""Outcomes of a request: the counts of `Attempts`."""
 
 
 @dataclass
@@ -46,11 +40,6 @@ class Attempts:
         """How often the strategy was used in the session."""
         return self.complied + self.late + self.refused + self.void + self.awaited
 
-    @property
-    def in_words(self) -> str:
-        """The results in words: "2 complied, 1 without an answer"."""
-        return result_words({what: getattr(self, what) for what, _ in RESULTS})
-
     def to_json(self) -> dict[str, Any]:
         """Return the counts, and the beliefs with mean and interval."""
         return {
@@ -66,11 +55,15 @@ class Attempts:
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
-    """One person in a session: strategy -> results."""
+class MethodProgress:
+    """One person's requests in the activities of a session that use the same method.
 
-    id: str
-    name: str
+    `activities` are their titles, `chosen` is the method's configuration, and `strategies` the
+    results. The beliefs are those of that method, which all responses in this world count in.
+    """
+
+    activities: tuple[str, ...]
+    chosen: PersuasionConfig
     strategies: Mapping[str, Attempts]
 
     @property
@@ -78,19 +71,55 @@ class Progress:
         """How often the person was asked for something."""
         return sum(one.used for one in self.strategies.values())
 
-    def total(self, what: str) -> int:
-        """Sum one of the counts over the strategies."""
-        return sum(getattr(one, what) for one in self.strategies.values())
+    def to_json(self) -> dict[str, Any]:
+        """Return the activities, the method, and the results."""
+        return {
+            "activities": list(self.activities),
+            "method": asdict(self.chosen),
+            "strategies": {s: one.to_json() for s, one in self.strategies.items()},
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """One person in a session: their results with each method."""
+
+    id: str
+    name: str
+    methods: tuple[MethodProgress, ...]
 
     @property
-    def in_words(self) -> str:
-        """The results of all requests, over the strategies."""
-        return result_words({what: self.total(what) for what, _ in RESULTS})
+    def strategies(self) -> Mapping[str, Attempts]:
+        """The results of each strategy over all methods; the beliefs are of the last one used."""
+        found: dict[str, Attempts] = {}
+        for strategy in dict.fromkeys(s for one in self.methods for s in one.strategies):
+            every = [one.strategies[strategy] for one in self.methods if strategy in one.strategies]
+            found[strategy] = _added([one for one in every if one.used] or every[:1])
+        return found
+
+    @property
+    def interactions(self) -> int:
+        """How often the person was asked for something."""
+        return sum(one.interactions for one in self.methods)
+
+    def total(self, what: str) -> int:
+        """Sum one of the counts over the strategies."""
+        return sum(getattr(a, what) for one in self.methods for a in one.strategies.values())
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the person with the results, over all methods and by method."""
+        return {
+            "id": self.id,
+            "name": self.name,
+            "interactions": self.interactions,
+            "strategies": {s: one.to_json() for s, one in self.strategies.items()},
+            "methods": [one.to_json() for one in self.methods],
+        }
 
 
-def result_words(counts: Mapping[str, int]) -> str:
-    """Format the outcomes of requests in words, without zero counts."""
-    return ", ".join(f"{counts[what]} {words}" for what, words in RESULTS if counts[what])
+def _added(every: Sequence[Attempts]) -> Attempts:
+    counts = {what: sum(getattr(one, what) for one in every) for what in RESULTS}
+    return Attempts(**counts, before=every[-1].before, after=every[-1].after)
 
 
 def people_progress(
@@ -109,39 +138,61 @@ def people_progress(
     if not present:
         return ()
     said = {a.uuid: a.followed for replay in replays for _, a in replay.answers}
-    known = activities_of(replays)
+    groups: dict[PersuasionConfig, list[GameReplay]] = {}
+    for replay in [r for r in replays if r.persuades] or replays:
+        groups.setdefault(_chosen(replay), []).append(replay)
+    world, asking = replays[-1].game.world, [r for group in groups.values() for r in group]
+    models = [
+        (PersonModels(store, _strategies(group), chosen, world=world), group)
+        for chosen, group in groups.items()
+    ]
+    every = PersonModels(store, _strategies(asking), next(iter(groups)), world=world)
+    responses = every.responses()
+    found = []
+    for person in present:
+        own = every.feedback.method(person) is not None  # it holds in all activities
+        history = every.history(person)
+        parts = [
+            _with_method(person, model.recall(person, responses), history, replays, group, said)
+            for model, group in ([(every, asking)] if own else models)
+        ]
+        found.append(Progress(person, names.get(person, person), tuple(parts)))
+    return tuple(found)
+
+
+def _chosen(replay: GameReplay) -> PersuasionConfig:
+    return PAPER if replay.activity is None else replay.activity.persuasion
+
+
+def _strategies(replays: Sequence[GameReplay]) -> tuple[str, ...]:
+    """Return the strategies of some games; of an unknown activity, those that were used."""
+    known = [s for one in activities_of(replays) for s in one.strategies]
     used = [a.strategy for r in replays if r.activity is None for _, a in r.answers]
-    strategies = dict.fromkeys([*(s for one in known for s in one.strategies), *used])
-    asking = [r.activity.persuasion for r in replays if r.activity is not None and r.persuades]
-    chosen = asking[0] if asking else PAPER
-    memory = PersonModels(store, tuple(strategies), chosen, world=replays[-1].game.world)
-    responses = memory.responses()
-    return tuple(
-        _progress(
-            person,
-            names.get(person, person),
-            memory.recall(person, responses),
-            memory.history(person),
-            replays,
-            said,
-        )
-        for person in present
-    )
+    return tuple(dict.fromkeys([*known, *used]))
 
 
-def _progress(
+def _with_method(
     person: str,
-    name: str,
     known: PersonModel,
     history: Sequence[FeedbackEntry],
     replays: Sequence[GameReplay],
+    asking: Sequence[GameReplay],
     said: Mapping[str, bool | None],
-) -> Progress:
+) -> MethodProgress:
     """Count the results of each strategy, and compute the beliefs before and after.
 
     Corrections made later apply: a response that was voided counts in neither belief.
+
+    Args:
+        person: the id of the person.
+        known: the model by the method of these games.
+        history: all requests to the person.
+        replays: the games of the session.
+        asking: those of them in which this method is used.
+        said: whether a response followed too late, by the id of the request.
     """
     games = {replay.game.id for replay in replays}
+    own = {replay.game.id for replay in asking}
     first, last = replays[0].game, replays[-1].game
     asked = {entry.request: entry.seq for entry in history if entry.request == entry.uuid}
     before = [e for e in history if asked.get(e.request, e.seq) < first.seq]
@@ -155,7 +206,7 @@ def _progress(
     found = {s: Attempts(before=old[s], after=new[s]) for s in known.beliefs}
     for entry in history:
         one = found.get(entry.strategy)
-        if entry.game not in games or one is None or entry.settled:
+        if entry.game not in own or one is None or entry.settled:
             continue  # another entry has the answer to this request
         if entry.void:
             one.void += 1
@@ -167,7 +218,8 @@ def _progress(
             one.late += 1
         else:
             one.refused += 1
-    return Progress(person, name, found)
+    titles = tuple(dict.fromkeys(replay.title for replay in asking))
+    return MethodProgress(titles, known.chosen, found)
 
 
 def _beliefs(

@@ -92,11 +92,6 @@ class Noted:
     taken_back: int = 0
     """The number of a call that no longer counts; 0: none."""
 
-    @property
-    def by_staff(self) -> bool:
-        """Whether staff did it: what Tangy hears is logged with those who are on duty."""
-        return bool(self.by) and self.did != "heard"
-
 
 @dataclass(frozen=True, slots=True)
 class Unclear:

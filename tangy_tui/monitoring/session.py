@@ -156,15 +156,7 @@ class Session:
             "faults": fault_rows(self.faults),
             "fault_list": [one.document() for one in self.faults],
             "questions": [one.document() for one in self.questions],
-            "people": [
-                {
-                    "id": person.id,
-                    "name": person.name,
-                    "interactions": person.interactions,
-                    "strategies": {s: one.to_json() for s, one in person.strategies.items()},
-                }
-                for person in self.people
-            ],
+            "people": [person.to_json() for person in self.people],
             "player_facts": [one.to_json() for one in self.player_facts],
             "look_after": [
                 {"fault": f.id, "name": f.name, "status": f.status, "advice": list(f.advice)}

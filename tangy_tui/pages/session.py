@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 
 from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
-from tangy_tui.monitoring.people_progress import RESULTS, Progress
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import Session
-from tangy_tui.pages.beliefs import belief_drawing, interval
+from tangy_tui.pages.beliefs import responses_part
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.staff_parts import STYLE as PARTS_STYLE
 from tangy_tui.pages.staff_parts import (
@@ -27,7 +26,8 @@ from tangy_tui.text import session_page as say
 from tangy_tui.text.activities import stage_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.report import WORLD_WORDS, care_lines, paused_words, quiet_words
+from tangy_tui.text.report import WORLD_WORDS, care_lines, paused_words
+from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
@@ -39,9 +39,6 @@ FEW_DRAWN = 3
 
 FEW_ROWS = 24
 """The most people in all drawings together, if the page should fit on two sheets."""
-
-COLUMNS = ("person", "strategy", "used", *(words for _, words in RESULTS), "before", "after")
-"""The columns of the table of people: the results add up to the uses of a strategy."""
 
 STYLE = """
 :root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; }
@@ -91,10 +88,10 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 KEY = (
     ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', say.VISIT),
     ('<rect class="asks" x="1" y="6" width="18" height="4"/>', "asks for help"),
-    ('<circle class="yes" cx="10" cy="8" r="5"/>', "did it"),
-    ('<circle class="late" cx="10" cy="8" r="4.4"/>', "did it late"),
-    ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', "would rather not"),
-    ('<circle class="open" cx="10" cy="8" r="4.4"/>', "without an answer"),
+    ('<circle class="yes" cx="10" cy="8" r="5"/>', RESULT_WORDS["complied"]),
+    ('<circle class="late" cx="10" cy="8" r="4.4"/>', RESULT_WORDS["late"]),
+    ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', RESULT_WORDS["refused"]),
+    ('<circle class="open" cx="10" cy="8" r="4.4"/>', RESULT_WORDS["awaited"]),
     ('<line class="tick" x1="6" x2="6" y1="4" y2="12"/>'
      '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', "number called, anything else"),
     ('<g class="fault minor"><circle cx="10" cy="8" r="7"/></g>', "fault"),
@@ -114,7 +111,7 @@ def session_page(session: Session, *, full: bool = True) -> str:
     few = max(1, min(FEW_DRAWN, FEW_ROWS // max(1, len(session.people))))
     parts += _timelines(session, MOST_DRAWN if full else few)
     if full:
-        parts += [*_people(session), *_faults(session), *_tables(session)]
+        parts += [*responses_part(session), *_faults(session), *_tables(session)]
     return document(
         title, _sum(session, full=full), [*parts, *_notes(session)], STYLE + PARTS_STYLE
     )
@@ -186,7 +183,7 @@ def _sentence(words: str) -> str:
 
 def _care(session: Session) -> Iterator[str]:
     yield heading(say.CARE)
-    people = care_lines(attention(session.replays).values(), session.name)
+    people = care_lines(attention(session.replays).values(), session.name, session.replays)
     if people:
         lines = "".join(f"<li>{escape(line)}</li>" for line in people)
         yield f'<div class="care"><ul>{lines}</ul></div>'
@@ -245,42 +242,6 @@ def _key(stages: Mapping[str, str]) -> str:
         for mark, words in (*bands, *KEY)
     )
     return f'<p class="key">{marks}</p>'
-
-
-def _people(session: Session) -> Iterator[str]:
-    if not session.persuades:
-        return
-    yield heading(say.RESPONDED)
-    asked = [person for person in session.people if person.interactions]
-    if not asked:
-        yield paragraph(say.NOBODY_ASKED)
-        return
-    yield paragraph(say.BELIEFS)
-    yield '<div class="both">'
-    for person in asked:
-        yield f"<div><h3>{escape(person.name)}</h3>"
-        yield figure(belief_drawing(person), say.person_words(person)) + "</div>"
-    yield "</div>"
-    quiet = [person.name for person in session.people if not person.interactions]
-    if quiet:
-        yield paragraph(quiet_words(quiet))
-    yield table(COLUMNS, _people_rows(asked))
-
-
-def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
-    for person in people:
-        for strategy, one in person.strategies.items():
-            if not one.used:
-                continue
-            beliefs = []
-            for belief in (one.before, one.after):
-                low, high = interval(belief.alpha, belief.beta)
-                words = f"{belief.mean:.0%} ({low:.0%} to {high:.0%})"
-                beliefs.append(words.replace(" ", "\N{NO-BREAK SPACE}"))
-            yield (
-                person.name, strategy, one.used, *(getattr(one, what) for what, _ in RESULTS),
-                *beliefs,
-            )  # fmt: skip
 
 
 def _faults(session: Session) -> Iterator[str]:

@@ -35,6 +35,8 @@ def people_part(session: Session) -> Iterator[str]:
     yield '<div class="people">'
     yield table(columns, rows)
     yield "</div>"
+    if where := say.visiting_words(session.replays):
+        yield paragraph(where)
     for line in say.changes_lines(session.replays, session.name):
         yield paragraph(line)
 
@@ -50,7 +52,7 @@ def calls_part(session: Session) -> Iterator[str]:
             f"<s>{escape(label)}</s>" if taken else f"<span>{escape(label)}</span>"
             for label, taken in labels
         )
-        which = f"<b>Game {game.number}:</b>" if len(told) > 1 else ""
+        which = f"<b>Game {game.number}:</b>" if len(session.replays) > 1 else ""
         yield f'<p class="called">{which}{cells}</p>'
         if any(taken for _, taken in labels):
             yield f'<p class="dim">{escape(say.TAKEN_BACK)}</p>'

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from tangy_tui.monitoring.fault import ENDINGS, OVER, Fault, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay
+from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import status_words
 
 WIDTH, LEFT, RIGHT = 1000, 118, 18
@@ -224,16 +225,17 @@ def _answer(x: float, y: float, answer: AnsweredRequest) -> str:
     An unknown response is a broken ring.
     """
     if answer.complied:
-        return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>did it</title></circle>'
+        words = RESULT_WORDS["complied"]
+        return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>{words}</title></circle>'
     if answer.followed or answer.complied is None:
-        kind, words = ("late", "did it late") if answer.followed else ("open", "without an answer")
+        kind, what = ("late", "late") if answer.followed else ("open", "awaited")
         mark = f'<circle class="{kind}" cx="{x:.1f}" cy="{y}" r="4.4">'
-        return f"{mark}<title>{words}</title></circle>"
+        return f"{mark}<title>{RESULT_WORDS[what]}</title></circle>"
     arm = 4.2
     return (
         f'<path class="no" d="M{x - arm:.1f} {y - arm:.1f}L{x + arm:.1f} {y + arm:.1f}'
         f'M{x - arm:.1f} {y + arm:.1f}L{x + arm:.1f} {y - arm:.1f}">'
-        "<title>would rather not</title></path>"
+        f"<title>{RESULT_WORDS['refused']}</title></path>"
     )
 
 

@@ -30,11 +30,11 @@ MONTH_COLUMNS = (
 WHO = "Who took part"
 WHO_COLUMNS = (
     "person", "games", "last here", "asked for help", "waited", "visits", "time with Tangy",
-    "asked to do", "won",
+    "did as asked", "won",
 )  # fmt: skip
 GAMES = "Game by game"
 GAME_COLUMNS = (
-    "when", "asked for help", "waited", "visits", "time with Tangy", "help given", "asked to do",
+    "when", "asked for help", "waited", "visits", "time with Tangy", "help given", "did as asked",
     "won",
 )  # fmt: skip
 WORKS = "What works"

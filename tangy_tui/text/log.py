@@ -10,13 +10,12 @@ from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
-from tangy_tui.monitoring.people_progress import Progress
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted, Unclear
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, of_times, often
 from tangy_tui.text.player_facts import HEADING, in_game_words, player_lines
 from tangy_tui.text.report import (
     attention_lines,
@@ -27,6 +26,7 @@ from tangy_tui.text.report import (
     quiet_words,
     staff_action_lines,
 )
+from tangy_tui.text.results import progress_line
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.staff_actions import action_line
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
@@ -142,8 +142,8 @@ def session_lines(session: Session) -> Iterator[str]:
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield from changes_lines(session.replays, session.name)
     found = attention(session.replays).values()
-    yield from attention_lines(found, session.name)
-    yield from care_lines(found, session.name)
+    yield from attention_lines(found, session.name, session.replays)
+    yield from care_lines(found, session.name, session.replays)
     replays = {replay.game.id: replay for replay in session.replays}
     for facts in session.player_facts:
         yield f"{HEADING}{in_game_words(replays, facts)}:"
@@ -151,7 +151,7 @@ def session_lines(session: Session) -> Iterator[str]:
     yield from call_lines(session)
     yield from staff_action_lines(session)
     yield ""
-    yield counted(len(session.faults), "fault") + ("." if not session.faults else ":")
+    yield f"{counted(len(session.faults), 'fault')}:" if session.faults else "No faults."
     numbers = {game.id: game.number for game in session.games}
     for number, fault in enumerate(session.faults, 1):
         kind = "CRITICAL, " if fault.critical else ""
@@ -165,10 +165,10 @@ def session_lines(session: Session) -> Iterator[str]:
             worked = round(row["success"] * row["instances"])
             yield (
                 f"  {row['criticality']}, first recovery “{RECOVERY_WORDS[row['recovery']]}”: "
-                f"it worked {worked} of {counted(row['instances'], 'time')}"
+                f"it worked {of_times(worked, row['instances'])}"
             )
     yield ""
-    yield from (_person_line(person) for person in session.people if person.interactions)
+    yield from (progress_line(person) for person in session.people if person.interactions)
     if session.persuades and (quiet := [p.name for p in session.people if not p.interactions]):
         yield quiet_words(quiet)
     yield from limits_lines([replay.game for replay in session.replays if replay.persuades])
@@ -186,13 +186,12 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
     limits = dict.fromkeys(game.asks for game in games if game.asks != (0, 0))
     for visit, most in limits:
         yield (
-            f"Tangy asks a person in vain at most {counted(visit, 'time')} in a visit, "
-            f"and {counted(most, 'time')} in a game."
+            f"If a person does not do what Tangy asks, it asks at most {often(visit)} in a visit, "
+            f"and {often(most)} in a game."
         )
     pauses, seconds = sum(g.pauses[0] for g in games), sum(g.pauses[1] for g in games)
     if pauses:
-        times = counted(pauses, "time")
-        yield f"The robot waited for late data {times}, for {seconds:.1f} s in all."
+        yield f"The robot waited for late data {often(pauses)}, for {seconds:.1f} s in all."
 
 
 def _games_lines(replays: Sequence[GameReplay]) -> Iterator[str]:
@@ -235,15 +234,6 @@ def _sums(games: Sequence[Game]) -> str:
     if endless:
         parts.append(f"{endless} without an end in the log")
     return ", ".join(parts)
-
-
-def _person_line(person: Progress) -> str:
-    parts = []
-    for strategy, one in person.strategies.items():
-        if one.used:
-            expected = f"expected {one.before.mean:.0%} before, {one.after.mean:.0%} after"
-            parts.append(f"{strategy}: {one.in_words} ({expected})")
-    return f"{person.name}, asked {counted(person.interactions, 'time')}: {'; '.join(parts)}"
 
 
 HOW_TO_GO_ON = "tangy log show 1: a game step by step. tangy report session 1: its report."

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
-from tangy_tui.app.card_news import BY as TANGY
-from tangy_tui.monitoring.attention import Attention, Call, attention, calls_in
+from tangy_tui.monitoring.attention import Attention, Call, attention, calls_in, visiting
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
-from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_actions import action_words
+from tangy_tui.text.staff_actions import by_staff, did_words
 from tangy_tui.text.times import length, time_of_day
 
 if TYPE_CHECKING:
@@ -41,6 +40,9 @@ STAFF_COLUMNS = ("when", "who", "what")
 NO_STAFF = "Staff did not step in."
 FAULTS_SHORT = "What went wrong"
 FAULT_COLUMNS = ("when", "what", "what came of it")
+NOT_REACHED = "not reached"
+FEW_WAITS = 3
+"""Up to so many waits are told one by one."""
 LONG_WAIT = 300.0  # s from which a wait needs attention
 STAFF_MOVES: Mapping[MoveKind, str] = {
     "acknowledged": "saw",
@@ -62,18 +64,19 @@ def paused_words(pauses: PauseTotal) -> str:
 
 def asked_words(one: Attention) -> str:
     """Tell how often a person asked for help."""
-    return counted(one.requests, "time") if one.requests else "no"
+    return often(one.requests) if one.requests else "no"
 
 
 def waited_words(one: Attention) -> str:
-    """Tell how long a person waited: the median and the longest wait."""
-    if one.longest is None:
-        return "\N{EN DASH}"
-    if one.requests == 1 or one.median is None:
-        return length(one.longest) + (", not reached" if one.open else "")
-    more = ", once not reached" if one.open else ""
+    """Tell how long a person waited: each of a few waits, or the median and the longest wait."""
+    if one.longest is None or one.median is None:
+        more = f", {NOT_REACHED}" if one.open else ""
+        return f"{length(one.longest)}{more}" if one.longest is not None else "\N{EN DASH}"
+    more = f"; {often(len(one.open))} {NOT_REACHED}" if one.open else ""
+    if one.requests <= FEW_WAITS:
+        return listed(map(length, [*one.waits, *one.open])) + more
     usual, most = length(one.median), length(one.longest)
-    return (usual if usual == most else f"{usual}, at most {most}") + more
+    return (usual if usual == most else f"usually {usual}, at most {most}") + more
 
 
 def visits_words(one: Attention) -> str:
@@ -97,14 +100,14 @@ def helped_words(one: Attention, activities: Iterable[Activity]) -> str:
 
 
 def response_words(answers: Sequence[AnsweredRequest]) -> str:
-    """Tell how often a person complied, "did 4 of 5", and how often that is unknown."""
+    """Tell how often a person complied, "4 of 5", and how often that is unknown."""
     known = [one for one in answers if one.complied is not None]
     if not answers:
         return "\N{EN DASH}"
     done = sum(bool(one.complied or one.followed) for one in known)
     unknown = len(answers) - len(known)
-    words = f"did {done} of {len(known)}" if known else ""
-    more = f"{unknown} not seen" if unknown else ""
+    words = f"{done} of {len(known)}" if known else ""
+    more = f"{often(unknown)} not known" if unknown else ""
     return ", ".join(filter(None, (words, more)))
 
 
@@ -131,7 +134,7 @@ def people_table(session: Session) -> tuple[tuple[str, ...], list[tuple[str, ...
         ]
     if session.persuades:
         columns += [
-            ("asked to do", lambda o: response_words([a for a in answers if a.person == o.id]))
+            ("did as asked", lambda o: response_words([a for a in answers if a.person == o.id]))
         ]
     if wins:
         columns += [("won", lambda one: str(one.won or ""))]
@@ -139,12 +142,30 @@ def people_table(session: Session) -> tuple[tuple[str, ...], list[tuple[str, ...
     return tuple(name for name, _ in columns), rows
 
 
-def care_lines(found: Iterable[Attention], name: Name) -> list[str]:
-    """Name the people who need attention: still waiting, after a long wait, or never visited."""
+def visiting_words(replays: Iterable[GameReplay]) -> str:
+    """Tell in which of several activities Tangy goes to people; "" if that is the same in all."""
+    goes, stays = visiting(replays)
+    if not goes or not stays:
+        return ""
+    return f"Tangy goes to people only in {listed(goes)}, not in {listed(stays)}."
+
+
+def care_lines(
+    found: Iterable[Attention], name: Name, replays: Sequence[GameReplay] = ()
+) -> list[str]:
+    """Name the people who need attention: still waiting, after a long wait, or never visited.
+
+    Args:
+        found: the attention to each person.
+        name: returns people's names.
+        replays: the games, to name those in which Tangy goes to people.
+    """
     people = list(found)
     lines = []
     if never := [name(one.id) for one in people if one.never_visited]:
-        lines.append(f"Tangy never went to {listed(never)}.")
+        goes, stays = visiting(replays)
+        where = f" in {listed(goes)} (in {listed(stays)} it goes to nobody)" if stays else ""
+        lines.append(f"Tangy never went to {listed(never)}{where}.")
     waiting, waited = dict[str, list[str]](), dict[str, list[str]]()
     for one in sorted(people, key=lambda one: -max(one.open or one.waits, default=0.0)):
         if one.open:
@@ -163,18 +184,26 @@ def quiet_words(names: Sequence[str]) -> str:
     return f"Not asked for anything: {', '.join(names)}."
 
 
-def attention_lines(found: Iterable[Attention], name: Name) -> list[str]:
+def attention_lines(
+    found: Iterable[Attention], name: Name, replays: Sequence[GameReplay] = ()
+) -> list[str]:
     """Tell who won, and how long those who asked for help waited and had Tangy with them."""
     people = list(found)
-    asked = [
-        f"  {name(one.id)} {counted(one.requests, 'time')}: waited {waited_words(one)}"
-        + (f"; {counted(one.visits, 'visit')}, {length(one.seconds)} in all" * one.could_visit)
-        for one in people
-        if one.requests
-    ]
     won = [name(one.id) for one in people if one.won]
     lines = [f"Won: {listed(won)}."] if won else []
-    return [*lines, *(["Asked for help:", *asked] if asked else [])]
+    asked = [_asked_line(one, name) for one in people if one.requests]
+    where = visiting_words(replays)
+    if asked:
+        lines += ["Asked for help:", *asked, *([f"  {where}"] if where else [])]
+    return lines
+
+
+def _asked_line(one: Attention, name: Name) -> str:
+    told = f"  {name(one.id)} {often(one.requests)}: waited {waited_words(one)}"
+    if not one.could_visit:
+        return told
+    visited = f"{counted(one.visits, 'visit')}, {length(one.seconds)} in all"
+    return f"{told}; {visited if one.visits else 'never visited'}"
 
 
 def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
@@ -190,11 +219,13 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
         name(change.person) for _, change in changes if change.what == "visit put off"
     )
     if visits:
-        each = [who if n == 1 else f"{who} ({n} times)" for who, n in visits.items()]
+        each = [who if n == 1 else f"{who} ({often(n)})" for who, n in visits.items()]
         lines.append(f"Tangy visited {listed(each)} although they had not asked.")
     if first := sum(change.what == "calls first" for _, change in changes):
-        times = counted(first, "time")
-        lines.append(f"Many were asking: {times}, Tangy called some numbers before it helped.")
+        lines.append(
+            f"Many people asked at the same time. {often(first).capitalize()}, Tangy called some "
+            "numbers before it went to the next one."
+        )
     return lines
 
 
@@ -217,8 +248,7 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
 def _staff_words(moment: Moment, name: Name) -> tuple[str, str] | None:
     what = moment.what
     if isinstance(what, Noted):
-        staff = what.by_staff and what.by != TANGY
-        return (what.by, action_words(what, name)) if staff else None
+        return (what.by, did_words(what, name)) if by_staff(what) else None
     move = getattr(what, "move", None)
     fault: Fault | None = getattr(what, "fault", None)
     if move is None or fault is None or not move.by or move.kind not in STAFF_MOVES:
@@ -244,7 +274,7 @@ def call_lines(session: Session) -> Iterator[str]:
     if rows:
         yield f"{CALLED}:"
     for game, labels in rows:
-        which = f"game {game.number}: " if len(rows) > 1 else ""
+        which = f"game {game.number}: " if len(session.replays) > 1 else ""
         called = [f"{label} ({BACK})" if taken else label for label, taken in labels]
         yield f"  {which}{', '.join(called)}"
 

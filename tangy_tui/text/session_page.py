@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_tui.text.faults import RECOVERY_WORDS
-from tangy_tui.text.numbers import counted
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import Fault
-    from tangy_tui.monitoring.people_progress import Progress
 
 VISIT = "Tangy is with them"
 STOOD_STILL = "Tangy stood still"
@@ -42,11 +40,6 @@ def drawn_words(drawn: int, games: int) -> str:
 def game_caption(number: int, *, timed: bool) -> str:
     """Caption the timeline of a game."""
     return f"Game {number}, {'by minutes in the game' if timed else 'step by step'}."
-
-
-def person_words(person: Progress) -> str:
-    """Tell how often a person was asked, and their responses."""
-    return f"Asked {counted(person.interactions, 'time')}: {person.in_words}."
 
 
 def fault_facts(fault: Fault, game: int | None) -> str:

@@ -5,18 +5,100 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
+from tangy_profiles.staff_records import StaffActionKind
+from tangy_tui.app.card_news import BY as TANGY
+from tangy_tui.app.game_commands import AUTONOMY
 from tangy_tui.monitoring.replay import Noted
+from tangy_tui.text.control import autonomy_words
 
 if TYPE_CHECKING:
     from tangy_tui.text.situations import Name
+
+OF_THE_PROGRAM: tuple[StaffActionKind, ...] = (
+    *("heard", "cards dealt", "card learnt", "card doubted"),
+    *("robot frozen", "program frozen", "faults planned"),
+)
+"""What Tangy or the program did; the log names those on duty with some of them."""
 
 PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
 """The ids of people in sentences that an earlier version logged."""
 
 
+def by_staff(noted: Noted) -> bool:
+    """Return whether staff did it, and not Tangy or the program."""
+    return bool(noted.by) and noted.by != TANGY and noted.did not in OF_THE_PROGRAM
+
+
 def action_line(noted: Noted, name: Name) -> str:
-    """Tell what was done, and who did it, in a sentence."""
-    return f"{action_words(noted, name)}{f', by {noted.by}' if noted.by_staff else ''}."
+    """Tell who did what in a sentence: "Ada paused the game."."""
+    words = action_words(noted, name)
+    if by_staff(noted):
+        words = f"{noted.by} {did_words(noted, name)}"
+    return f"{words[:1].upper()}{words[1:]}."
+
+
+def did_words(noted: Noted, name: Name) -> str:
+    """Tell what staff did, to follow their name: "paused the game"."""
+    detail, person = noted.detail, name(noted.person) if noted.person else ""
+    match noted.did:
+        case "resumed":
+            return "went on with the game after an interruption"
+        case "paused":
+            return "paused the game"
+        case "went on":
+            return "ended the pause"
+        case "stopped":
+            return "stopped the robot"
+        case "let go on":
+            return "let the robot go on after a stop"
+        case "took over":
+            return "took over, to say what Tangy does next"
+        case "ended":
+            return "ended the game"
+        case "autonomy":
+            return f"chose how much Tangy does by itself: {_autonomy_words(detail)}"
+        case "drove":
+            return "drove the robot by hand"
+        case "called again":
+            return f"had the last number called again{f': {detail}' if detail else ''}"
+        case "asked for":
+            return f"told Tangy that {person} asks for help"
+        case "told":
+            return f"told Tangy about {person or 'the group'}: {detail}"
+        case "pace":
+            return f"set the pace to a call every {detail} s"
+        case "took back":
+            return f"took a call back: {detail}"
+        case "claim right":
+            return f"had {_card(detail, person)} checked: it wins"
+        case "claim wrong":
+            return f"had {_card(detail, person)} checked: it does not win yet"
+        case "patterns":
+            return f"let the game go on for: {detail}"
+        case "rules":
+            return f"chose: {detail}"
+        case "came":
+            return f"told Tangy that {person} is here"
+        case "left":
+            return f"told Tangy that {person} has left"
+        case "response voided":
+            return f"said that {person}'s last response does not count"
+        case "card given":
+            whose = f"card {detail}" if detail else "another card"
+            return f"told Tangy that {person} has {whose}"
+        case "fault injected":
+            return f"brought about a fault: {detail}"
+        case "fault lifted":
+            return f"ended a fault: {detail}"
+        case "noted":
+            return f"noted: {_named(detail, name)}"
+        case (
+            "heard" | "cards dealt" | "card learnt" | "card doubted" | "robot frozen"
+            | "program frozen" | "faults planned"
+        ):  # fmt: skip
+            return action_words(noted, name)
+        case forgotten:
+            assert_never(forgotten)
 
 
 def action_words(noted: Noted, name: Name) -> str:
@@ -38,7 +120,7 @@ def action_words(noted: Noted, name: Name) -> str:
         case "ended":
             return "the game was ended"
         case "autonomy":
-            return f"autonomy: {detail}"
+            return f"how much Tangy does by itself: {_autonomy_words(detail)}"
         case "drove":
             return "the robot was driven by hand"
         case "called again":
@@ -89,6 +171,11 @@ def action_words(noted: Noted, name: Name) -> str:
             return _named(detail, name)
         case forgotten:
             assert_never(forgotten)
+
+
+def _autonomy_words(level: str) -> str:
+    known = next((one for one in AUTONOMY if one == level), None)
+    return level if known is None else f"it {autonomy_words(known)}"
 
 
 def _card(number: str, person: str) -> str:

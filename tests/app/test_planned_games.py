@@ -158,12 +158,12 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
     def name(person: str) -> str:
         return "Rosa" if person == "user3" else person
 
-    pace = f"the pace was set to {planned.world.pace:g} s"
+    pace = f"set the pace to a call every {planned.world.pace:g} s"
     assert [what for _, _, what in staff_rows([replay], name)] == [
-        pace, "Tangy was told that Rosa asks for help"
+        pace, "told Tangy that Rosa asks for help"
     ]  # fmt: skip
     (told,) = moment_lines(replay.moments[-1], True, None, name)
-    assert "Tangy was told that Rosa asks for help" in told
+    assert told.endswith(f"{planned.control.by} told Tangy that Rosa asks for help.")
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

@@ -9,11 +9,12 @@ from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
-from typing import cast
+from typing import cast, get_args
 
 import pytest
 
 from tangy_profiles.game_records import GameChange, RecoveryEvent
+from tangy_profiles.staff_records import StaffActionKind
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_tui.app.game_commands import ComesIn, GoesAway
 from tangy_tui.app.scripted_staff import scripted_controller
@@ -33,7 +34,7 @@ from tangy_tui.monitoring.house import (
 from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted, Unclear
 from tangy_tui.pages.house import house_page, person_page
 from tangy_tui.text.report import attention_lines, care_lines
-from tangy_tui.text.staff_actions import action_line, action_words
+from tangy_tui.text.staff_actions import action_line, action_words, by_staff
 from tests.support.games import play
 
 DICTIONARY = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
@@ -117,9 +118,9 @@ def test_the_summary_lists_winners_and_waits_longest_first() -> None:
     assert attention_lines([ann, bob, cy], str) == [
         "Won: Ann.",
         "Asked for help:",
-        "  Ann 2 times: waited 4 min, at most 7 min; 2 visits, 30 s in all",
-        "  Bob 1 time: waited 1 min, not reached; 0 visits, 0 s in all",
-        "  Cy 2 times: waited 30 s, at most 2 min, once not reached; 1 visit, 0 s in all",
+        "  Ann twice: waited 20 s and 7 min; 2 visits, 30 s in all",
+        "  Bob once: waited 1 min, not reached; never visited",
+        "  Cy twice: waited 30 s and 2 min; once not reached; 1 visit, 0 s in all",
     ]
     assert care_lines([bob, ann, cy], str) == [
         "Tangy never went to Bob.",
@@ -172,7 +173,23 @@ def test_what_tangy_hears_is_not_told_as_done_by_staff() -> None:
     heard = Noted("heard", "Ada", person="user1", detail="honey")
     assert action_line(heard, rosa) == "Tangy heard from Rosa: honey."
     told = Noted("told", "Ada", person="user1", detail="honey")
-    assert action_line(told, rosa).endswith(", by Ada.")
+    assert action_line(told, rosa).startswith("Ada told Tangy about Rosa")
+    asks = Noted("asked for", "Ada", person="user1")
+    assert action_line(asks, rosa) == "Ada told Tangy that Rosa asks for help."
+
+
+@pytest.mark.parametrize("did", get_args(StaffActionKind))
+def test_every_action_of_staff_is_a_sentence_about_them(did: StaffActionKind) -> None:
+    rosa = {"user1": "Rosa"}.__getitem__
+    noted = Noted(did, "Ada", person="user1", detail="7")
+    assert action_line(noted, rosa).startswith("Ada ") is by_staff(noted)
+    assert not action_line(replace(noted, by=""), rosa).startswith("Ada")
+    assert ", by" not in action_line(noted, rosa)
+
+
+def test_what_the_program_notes_of_itself_is_not_told_as_done_by_staff() -> None:
+    assert not by_staff(Noted("robot frozen", "Ada", detail="3.0"))
+    assert not by_staff(Noted("card learnt", "tangy", person="user1", detail="7"))
 
 
 def test_names_replace_ids_next_to_any_punctuation() -> None:

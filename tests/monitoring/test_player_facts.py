@@ -149,7 +149,7 @@ def test_people_are_missed_only_if_tangy_visits_people(quiz: Quiz, activity: Act
     assert found and not any(one.could_visit or one.never_visited for one in found)
     assert care_lines(found, str) == []
     columns, rows = people_table(trivia)
-    assert not {"visits", "time with Tangy", "asked to do", "won"} & {*columns}
+    assert not {"visits", "time with Tangy", "did as asked", "won"} & {*columns}
     assert len(rows) == len(PEOPLE) and {*map(len, rows)} == {len(columns)}
     assert not any(name in line for line in session_lines(trivia) for name in ("Not asked", "vain"))
     unknown = read_session(quiz.store, read_games(quiz.store), {}, {})

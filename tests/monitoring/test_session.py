@@ -25,6 +25,7 @@ from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted
 from tangy_tui.monitoring.session import Session, SessionNote, read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
+from tangy_tui.text.results import RESULT_WORDS
 from tests.monitoring.conftest import Supervise
 from tests.support.append_body import append_body
 from tests.support.games import acts, play
@@ -177,23 +178,23 @@ def test_a_pending_response_is_not_reported_as_a_no(
     session = told(workspace)
     person = session.people[0]
     assert person.total("awaited") == 1
-    assert person.interactions == sum(person.total(what) for what, _ in RESULTS)
+    assert person.interactions == sum(person.total(what) for what in RESULTS)
     (line,) = [line for line in session_lines(session) if line.startswith(person.name)]
     (neutral,) = [part for part in line.split("; ") if "neutral: " in part]
-    assert "1 without an answer (" in neutral
+    assert "answer not known once (" in neutral
     assert f"{person.strategies['neutral'].refused} would rather not" in neutral or not (
         person.strategies["neutral"].refused
     )
     page = session_page(session)
-    assert "1 without an answer." in page
+    assert "answer not known once." in page
     root = ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
     rows = [[cell.text for cell in row] for row in root.iter("tr")]
-    at = next(row for row in rows if "without an answer" in row).index("without an answer")
+    at = next(row for row in rows if RESULT_WORDS["awaited"] in row).index(RESULT_WORDS["awaited"])
     (row,) = [row for row in rows if row[:2] == [person.name, "neutral"]]
     assert row[at] == "1"
     titles = [circle.find("title") for circle in root.iter("circle")
               if circle.get("class") == "open"]  # fmt: skip
-    assert [title.text for title in titles if title is not None] == ["without an answer"]
+    assert [title.text for title in titles if title is not None] == [RESULT_WORDS["awaited"]]
 
 
 def test_long_reports_list_only_games_with_faults_or_stops(
@@ -376,8 +377,6 @@ def test_injected_faults_are_marked(workspace: Workspace, learnt: Policy) -> Non
         ("faults planned", "voice-dead@2"),
         ("stopped", ""),
     ]
-    assert "*  the robot was stopped, by Ada." in "\n".join(
-        replay_lines(replay, workspace.activity, str)
-    )
+    assert "*  Ada stopped the robot." in "\n".join(replay_lines(replay, workspace.activity, str))
     session = read_session(workspace.store, [played], activities, {})
     assert any("voice-dead@2" in note.about for note in session.notes)
