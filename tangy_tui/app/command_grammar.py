@@ -192,6 +192,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("take back B-5", "counts B-5 as not called"),
     ("pace 20", "calls every 20 s; or: faster, slower"),
     ("check 17", "checks card 17 against all calls; check 17 Rosa says whose it is"),
+    ("NAME has card 17", "tells Tangy whose card it is, so that a claim names the person"),
     ("play for NAME, NAME", "the patterns to play for next, in order; patterns lists them"),
     ("several winners", "everybody with the pattern at the same call wins; or: one winner"),
     ("visits on", "also visits people who do not ask; or: visits off"),

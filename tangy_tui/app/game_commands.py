@@ -110,6 +110,14 @@ class ClaimCard:
 
 
 @dataclass(frozen=True, slots=True)
+class HasCard:
+    """Tell Tangy which card a person, by id, has; nobody else has it from then on."""
+
+    person: str
+    card: int
+
+
+@dataclass(frozen=True, slots=True)
 class ChoosePatterns:
     """Choose the patterns that follow the current one, or those of the next game."""
 
@@ -241,6 +249,7 @@ GameCommand: TypeAlias = (
     | SetAutonomy
     | CallAgain
     | Joins
+    | HasCard
     | AskFor
     | Tell
     | VoidResponse
@@ -264,6 +273,7 @@ AT_ONCE = (
     SetAutonomy,
     SetPace,
     ChangePace,
+    HasCard,
     AskFor,
     Tell,
     Confirm,
@@ -278,6 +288,7 @@ WITHOUT_GAME = (
     SetAutonomy,
     SetPace,
     ChangePace,
+    HasCard,
     ChoosePatterns,
     LetWin,
     ComesIn,
@@ -298,6 +309,7 @@ DoneKind = Literal[
     "pace",
     "claim right",
     "claim wrong",
+    "card given",
     "patterns",
     "several",
     "one winner",

@@ -36,6 +36,7 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GiveBack,
     GoOn,
+    HasCard,
     Joins,
     OneStep,
     Pause,
@@ -275,7 +276,7 @@ class GameController(PausingGames):
                 return self._confirm(yes=yes)
             case Joins():
                 return self._let_join(command)
-            case AskFor() | Tell():
+            case AskFor() | Tell() | HasCard():
                 return [self.robot.do(command)]
             case CallAgain() | Drive():
                 return [self.refuses(command) or self.robot.do(command)]

@@ -148,7 +148,10 @@ class GamePlanControls:
         holder = person or world.holder(card)
         self._note("claim right" if wins else "claim wrong", person=holder or "", detail=str(card))
         world.announce(words.format(card=card, pattern=pattern.label if pattern else ""))
-        told: list[Result] = [StaffNote("claim right" if wins else "claim wrong", str(card))]
+        people = (holder,) if holder else ()
+        told: list[Result] = [
+            StaffNote("claim right" if wins else "claim wrong", str(card), people=people)
+        ]
         if wins and holder:
             told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
         elif wins:

@@ -14,6 +14,7 @@ from tangy_tui.app.game_commands import (
     ComesIn,
     GameCommand,
     GoesAway,
+    HasCard,
     Joins,
     SetPace,
     TakeBackCall,
@@ -33,6 +34,11 @@ _JOINS = re.compile(
     r"(?:,? (?:at|on|in|to) (?:(table) |seat |chair |place )(\d{1,2}))?",
     re.I,
 )
+_CARD = re.compile(
+    r"(.+?) (?:has|holds) (?:the )?card (?:number )?#?(\d{1,6})"
+    r"|card (?:number )?#?(\d{1,6}) (?:is|belongs to) (.+?)(?:['\u2019]s)?",
+    re.I,
+)
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
@@ -46,6 +52,8 @@ def read_planned(
     """
     if claim := _claim(said, find_person, rules):
         return claim
+    if rules.claim and (card := _CARD.fullmatch(said)):
+        return HasCard(find_person(card[1] or card[4]), int(card[2] or card[3]))
     if pace := _PACE.fullmatch(said):
         seconds = float(pace[1])
         if not SHORTEST_PACE <= seconds <= LONGEST_PACE:

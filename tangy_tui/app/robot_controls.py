@@ -1,4 +1,4 @@
-"""The commands of staff that need a real robot: call again, ask for help, report, drive."""
+"""The commands of staff that need a real robot: call again, ask for help, report, cards, drive."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from tangy_tui.app.game_commands import (
     AskFor,
     CallAgain,
     Drive,
+    HasCard,
     StaffNote,
     Tell,
 )
@@ -103,7 +104,7 @@ class RobotControls:
         behaviour = self._robot.activity.behaviours[decision.behaviour]
         return behaviour.effect == "draw" and self._robot.calls_in > 0
 
-    def do(self, command: CallAgain | AskFor | Tell | Drive) -> StaffNote:
+    def do(self, command: CallAgain | AskFor | Tell | HasCard | Drive) -> StaffNote:
         """Carry out a command that needs a real robot.
 
         Raises:
@@ -119,6 +120,8 @@ class RobotControls:
                 return StaffNote("asked for", person)
             case Tell():
                 return self._tell(robot, command)
+            case HasCard(person, card):
+                return self._give_card(robot, person, card)
             case Drive():
                 return self._drive(robot, command)
         if not robot.called:
@@ -127,6 +130,20 @@ class RobotControls:
         self._note("called again", detail=label)
         robot.call_again()
         return StaffNote("call again", label)
+
+    def _give_card(self, robot: LiveWorld, person: str, card: int) -> StaffNote:
+        """Note whose card it is, and who had it until now as far as Tangy knew."""
+        if not robot.activity.deck.columns:
+            return StaffNote("no cards")
+        if person not in robot.people:
+            return StaffNote("not playing", person)
+        if robot.cards.numbers_on(card) is None:
+            return StaffNote("no such card", str(card))
+        before = robot.cards.dealt.owner(card)
+        robot.cards.dealt.give(person, card)
+        self._note("card given", person=person, detail=str(card))
+        others = (before,) if before not in ("", person) else ()
+        return StaffNote("card given", person, str(card), others)
 
     def _tell(self, robot: LiveWorld, command: Tell) -> StaffNote:
         """Report to a declared activity what a person says or does."""

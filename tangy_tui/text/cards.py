@@ -10,6 +10,14 @@ def card_title(name: str) -> str:
 
 WHOSE = "Whose card is it?"
 KEY_HINT = "Press {whose_card} to say whose it is."
+KNOWN, UNKNOWN = "has card {}", "card not known yet"
+IN_SIGHT = "was in sight last"
+ANOTHER = "another one"
+BY_NUMBER, TYPE_NUMBER = "a number", "you type the number on the card"
+NUMBER_DETAIL = "Type the number that is printed on the card."
+NUMBER_KEYS = "enter takes it   esc goes back"
+NUMBER_HELP = "Type the number on the person's card, and press Enter. Esc goes back."
+NO_NUMBER = "That is no number of a card: type digits alone."
 LEARNT_NEXT = "Tangy takes the next card it sees there"
 
 

@@ -119,9 +119,12 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             spoken = ", or as soon as it has spoken" if float(about) < SPOKEN_SECONDS else ""
             return f"Tangy calls every {about} seconds{spoken}."
         case "claim right":
-            return f"Card {about} wins. Tangy tells everybody."
+            return f"{_whose_card(noted, name)} wins. Tangy tells everybody."
         case "claim wrong":
-            return f"Card {about} does not win yet. Tangy tells everybody."
+            return f"{_whose_card(noted, name)} does not win yet. Tangy tells everybody."
+        case "card given":
+            before = "".join(f" It counted as {name(one)}'s until now." for one in noted.people)
+            return f"{name(about)} has card {noted.words}.{before}"
         case "patterns":
             return f"Played for: {about}."
         case "several":
@@ -238,6 +241,10 @@ def stands_words(why: str) -> str:
 
 def _cards(noted: StaffNote) -> str:
     return f" Cards in play: {noted.words}." if noted.words else ""
+
+
+def _whose_card(noted: StaffNote, name: Callable[[str], str]) -> str:
+    return f"Card {noted.about}{''.join(f' ({name(one)})' for one in noted.people)}"
 
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."

@@ -127,7 +127,7 @@ def check_words(check: Check) -> str:
         case "not checked":
             return _to_try(check.name)
         case "not told":
-            return _NOT_TOLD.get(check.name, "not reported")
+            return _NOT_TOLD[check.name]
         case "not ready":
             return _to_do(check)
         case forgotten:
@@ -135,6 +135,8 @@ def check_words(check: Check) -> str:
 
 
 _NOT_TOLD: dict[CheckName, str] = {
+    "robot": "nothing is known of it",
+    "battery": "no device of this robot tells its charge",
     "tablet": "this robot has no tablet",
     "cards": "this robot reads none",
     "faces": "Tangy knows no faces here",

@@ -33,6 +33,7 @@ from tangy_tui.app.game_commands import (
     Drive,
     GameCommand,
     GoesAway,
+    HasCard,
     SetAutonomy,
     SetPace,
     StopRobot,
@@ -66,6 +67,10 @@ def read(text: str) -> GameCommand | None:
         ("  Call   BACK. ", TakeBackCall()),
         ("ask for Rosa", AskFor("user2")),
         ("help for rosa", AskFor("user2")),
+        ("Rosa has card 17", HasCard("user2", 17)),
+        ("rosa holds the card number 5.", HasCard("user2", 5)),
+        ("card 17 is Rosa's", HasCard("user2", 17)),
+        ("card 17 belongs to Rosa", HasCard("user2", 17)),
         ("void Rosa", VoidResponse("user2")),
         ("Rosa: B", Tell("user2", "B")),
         ("rosa says the honey", Tell("user2", "the honey")),
@@ -109,7 +114,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
     typed = {type(command) for command in FIXED.values()} | {
         type(read(text)) for text in ("stop", "autonomy each", "ask for Rosa", "void Rosa",
                                       "Rosa: B", "drive left", "pace 9", "bingo 1", "play for x",
-                                      "here rosa", "left rosa", "add Berta")
+                                      "here rosa", "left rosa", "add Berta", "Rosa has card 7")
     }  # fmt: skip
     assert typed == set(get_args(GameCommand)) - {Confirm}  # Confirm has the keys Y and N
     helped = " ".join(key for key, _ in MEANINGS)
@@ -129,6 +134,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
             "'seventeen' is no number of a card. Say it as in: bingo 17.",
         ),
         ("left Nobody", "There is nobody called 'Nobody'."),
+        ("Nobody has card 17", "There is nobody called 'Nobody'."),
     ],
 )
 def test_an_incomplete_command_is_refused_in_one_sentence(text: str, said: str) -> None:

@@ -163,7 +163,7 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
         pace, "told Tangy that Rosa asks for help"
     ]  # fmt: skip
     (told,) = moment_lines(replay.moments[-1], True, None, name)
-    assert told.endswith(f"{planned.control.by} told Tangy that Rosa asks for help.")
+    assert told.casefold().endswith(f"{planned.control.by} told tangy that rosa asks for help.")
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

@@ -9,12 +9,14 @@ from typing import get_args
 import pytest
 
 from tangy_profiles.game_rules import GamePlan
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import (
     REFUSALS,
     ClaimCard,
     ComesIn,
     DoneKind,
     GoesAway,
+    HasCard,
     NoteKind,
     StaffNote,
 )
@@ -54,6 +56,25 @@ def test_a_live_claim_for_a_card_of_nobody_is_refused_once_all_cards_are_known(
     assert robot.control.refuses(ClaimCard(200)) == StaffNote("whose card", "200", "31, 32, 33, 34")
     assert robot.control.refuses(ClaimCard(200, "user1")) is None  # staff say whose it is
     assert robot.control.refuses(ClaimCard(31)) is None
+    workspace.close()
+
+
+def test_a_card_that_staff_name_is_known_before_a_visit_and_names_its_owner(taught: Path) -> None:
+    workspace = Workspace(taught)
+    robot = Robot(workspace)
+    control, dealt = robot.control, robot.world.cards.dealt
+    assert control.apply(HasCard("user1", 17)) == [StaffNote("card given", "user1", "17")]
+    given = StaffNote("card given", "user2", "17", ("user1",))
+    assert control.apply(HasCard("user2", 17)) == [given]
+    assert (dealt.card_of("user1"), dealt.card_of("user2")) == (None, 17)
+    assert control.apply(ClaimCard(17)) == [StaffNote("claim wrong", "17", people=("user2",))]
+    noted = [(e.record.did, e.record.person) for e in workspace.store.events(StaffAction)]
+    assert noted[-3:] == [
+        ("card given", "user1"), ("card given", "user2"), ("claim wrong", "user2")
+    ]  # fmt: skip
+    assert control.apply(HasCard("user9", 3)) == [StaffNote("not playing", "user9")]
+    assert control.apply(HasCard("user1", 10**5)) == [StaffNote("no such card", "100000")]
+    assert dealt.card_of("user1") is None
     workspace.close()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.set_up import CHECKS, Check, SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text
@@ -62,3 +62,8 @@ def test_every_example_of_a_command_is_understood(workspace: Workspace) -> None:
             typed = example.replace("Rosa to", "User 2 to").replace("Rosa", "User 3")
             _, said = answers(workspace, typed)
             assert said and text.not_known_words(typed, word) not in said, example
+
+
+def test_a_state_that_no_device_tells_has_words_of_its_own() -> None:
+    words = [text.check_words(Check(name, "not told")) for name in CHECKS]
+    assert len({*words}) == len(CHECKS)

@@ -11,6 +11,8 @@ from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import GoOn, Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.cards import NO_NUMBER, TYPE_NUMBER
+from tangy_tui.ui.dialogs.card_number import CardNumberDialog
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.widgets.log_view import LogView
@@ -110,5 +112,26 @@ async def test_staff_can_let_tangy_learn_a_card_again(
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
         await pilot.press("enter")
         await shown(pilot, "another one")
-        await pilot.press("enter")
+        await pilot.press("down", "enter")
         await until_shown(pilot, lambda: world.cards.dealt.card_of("user1") is None)
+
+
+@pytest.mark.slow
+async def test_staff_can_type_the_number_of_a_card_before_it_was_seen(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
+) -> None:
+    world.cards.dealt.deal({"user2": 17})
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press("b")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("enter")
+        await shown(pilot, TYPE_NUMBER)
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, CardNumberDialog))
+        await pilot.press(*"x", "enter")
+        await shown(pilot, NO_NUMBER)
+        await pilot.press("backspace", *"17", "enter")
+        await until_shown(pilot, lambda: world.cards.dealt.card_of("user1") == 17)
+        assert world.cards.dealt.card_of("user2") is None
+        assert ("card given", "user1", "17") in notes(workspace)

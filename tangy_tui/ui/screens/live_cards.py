@@ -9,16 +9,29 @@ from textual.app import App
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.card_news import BY, CardNews
+from tangy_tui.app.game_commands import GameCommand, HasCard
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.text.cards import KEY_HINT, LEARNT_NEXT, WHOSE, which_words
+from tangy_tui.text.cards import (
+    ANOTHER,
+    BY_NUMBER,
+    IN_SIGHT,
+    KEY_HINT,
+    KNOWN,
+    LEARNT_NEXT,
+    TYPE_NUMBER,
+    UNKNOWN,
+    WHOSE,
+    which_words,
+)
 from tangy_tui.text.live_news import note_words
 from tangy_tui.text.telling import TELL_HINT, card_question
+from tangy_tui.ui.dialogs.card_number import CardNumberDialog
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.widgets.log_view import Kind
 
-LEARN = "learn"
+LEARN, NUMBER = "learn", "number"
 
 
 class LiveCards:
@@ -55,28 +68,38 @@ class LiveCards:
             self._write(f"{question} {TELL_HINT}", "warn")
         self._asks = asks
 
-    async def say_whose(self, app: App[Any], control: GameController) -> None:
-        """Ask staff who has which card, and store the answer.
+    async def say_whose(
+        self, app: App[Any], control: GameController, do: Callable[[GameCommand], object]
+    ) -> None:
+        """Ask staff who has which card, and carry out their answer.
 
-        The card is one of those last in sight, or Tangy learns the person's card again.
+        The card is one of those last in sight, one whose number they type, or Tangy learns the
+        person's card again.
         """
         dealt, name = self._cards.dealt, self._workspace.name
         people = []
         for person in self._workspace.people:
             known = dealt.card_of(person.id)
-            people.append(
-                Option(person.id, person.name, f"has card {known}" if known else "not known yet")
-            )
+            note = UNKNOWN if known is None else KNOWN.format(known)
+            people.append(Option(person.id, person.name, note))
         whom = await app.push_screen_wait(ChooseDialog(WHOSE, people))
         if whom is None:
             return
-        seen = sorted({*self._cards.in_sight})
-        options = [Option(str(card), f"card {card}", "was in sight last") for card in seen]
-        options.append(Option(LEARN, "another one", LEARNT_NEXT))
+        options = [
+            *(
+                Option(str(card), f"card {card}", IN_SIGHT)
+                for card in sorted({*self._cards.in_sight})
+            ),
+            Option(NUMBER, BY_NUMBER, TYPE_NUMBER),
+            Option(LEARN, ANOTHER, LEARNT_NEXT),
+        ]
         told = await app.push_screen_wait(ChooseDialog(which_words(name(whom)), options))
-        if told is None:
-            return
-        dealt.give(whom, None if told == LEARN else int(told))
-        whose = "another card" if told == LEARN else f"card {told}"
-        control.note("card given", person=whom, detail="" if told == LEARN else told)
-        self._write(f"{name(whom)} has {whose}.", "dim")
+        if told == LEARN:
+            dealt.give(whom, None)
+            control.note("card given", person=whom)
+            self._write(f"{name(whom)} has another card.", "dim")
+        elif told is not None:
+            typed = told == NUMBER
+            card = await app.push_screen_wait(CardNumberDialog(name(whom))) if typed else int(told)
+            if card is not None:
+                do(HasCard(whom, card))
