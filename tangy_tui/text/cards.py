@@ -24,3 +24,8 @@ LEARNT_NEXT = "Tangy takes the next card it sees there"
 def which_words(name: str) -> str:
     """Ask which card a person has."""
     return f"Which card does {name} have?"
+
+
+def other_card_words(name: str) -> str:
+    """Tell that Tangy learns a person's card again."""
+    return f"{name} has another card."

@@ -23,6 +23,7 @@ from tangy_tui.text.cards import (
     TYPE_NUMBER,
     UNKNOWN,
     WHOSE,
+    other_card_words,
     which_words,
 )
 from tangy_tui.text.live_news import note_words
@@ -97,7 +98,7 @@ class LiveCards:
         if told == LEARN:
             dealt.give(whom, None)
             control.note("card given", person=whom)
-            self._write(f"{name(whom)} has another card.", "dim")
+            self._write(other_card_words(name(whom)), "dim")
         elif told is not None:
             typed = told == NUMBER
             card = await app.push_screen_wait(CardNumberDialog(name(whom))) if typed else int(told)
