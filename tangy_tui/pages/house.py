@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from tangy_profiles.game_world import GameWorld
 from tangy_tui.monitoring.house import PersonOverTime, RobotLog, by_month, of_world
@@ -26,7 +26,7 @@ def house_page(
         others: other worlds that also have games.
     """
     games = of_world(logs, world)
-    parts = [*_notes(logs, others), heading(say.MONTHS)]
+    parts = [*map(paragraph, say.notes(logs, games, others)), heading(say.MONTHS)]
     parts += [table(say.MONTH_COLUMNS, say.month_rows(by_month(games)))]
     parts += [heading(say.WHO), table(say.WHO_COLUMNS, say.who_rows(people))]
     if faults := list(say.fault_rows(games)):
@@ -50,15 +50,10 @@ def person_page(
         world: the world whose games are reported.
         others: other worlds that also have games.
     """
-    parts = [*_notes(logs, others), table(say.WHO_COLUMNS, say.who_rows([person]))]
+    games = [(one.log, one.replay) for one in person.games]
+    parts = [*map(paragraph, say.notes(logs, games, others))]
+    parts += [table(say.WHO_COLUMNS, say.who_rows([person]))]
     if strategies := list(say.strategy_rows(person)):
         parts += [heading(say.WORKS), table(say.STRATEGY_COLUMNS, strategies)]
     parts += [heading(say.GAMES), table(say.GAME_COLUMNS, say.game_rows(person.games))]
     return document(person.name, say.scope(world, len(person.games)), parts, STYLE)
-
-
-def _notes(logs: Sequence[RobotLog], others: Sequence[GameWorld]) -> Iterator[str]:
-    if others:
-        yield paragraph(say.others_words(others))
-    if len(logs) > 1:
-        yield paragraph(say.SAME_NAME)

@@ -5,27 +5,31 @@ from __future__ import annotations
 import calendar
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from statistics import median
 
 from tangy_profiles.game_world import GameWorld
+from tangy_tui.monitoring.attention import visiting
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.house import Month, PersonInGame, PersonOverTime, RobotLog
 from tangy_tui.monitoring.replay import GameReplay
-from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.report import (
     WORLD_WORDS,
     asked_words,
     helped_words,
     response_words,
     time_words,
+    visiting_words,
     visits_words,
     waited_words,
 )
 from tangy_tui.text.times import length, on_day
 
+NOTHING = "\N{EN DASH}"
 MONTHS = "Month by month"
 MONTH_COLUMNS = (
-    "month", "games", "time", "people", "requests", "waited", "never visited", "faults",
-    "not played to the end",
+    "month", "games", "what was played", "time", "people", "asked for help", "waited",
+    "never visited", "faults", "not played to the end",
 )  # fmt: skip
 WHO = "Who took part"
 WHO_COLUMNS = (
@@ -34,8 +38,8 @@ WHO_COLUMNS = (
 )  # fmt: skip
 GAMES = "Game by game"
 GAME_COLUMNS = (
-    "when", "asked for help", "waited", "visits", "time with Tangy", "help given", "did as asked",
-    "won",
+    "when", "what was played", "asked for help", "waited", "visits", "time with Tangy",
+    "help given", "did as asked", "won",
 )  # fmt: skip
 WORKS = "What works"
 STRATEGY_COLUMNS = ("way of asking", "asked", "did it in time", "share")
@@ -63,6 +67,18 @@ def others_words(worlds: Sequence[GameWorld]) -> str:
     return EACH_WORLD.format(others=listed(worlds, "or")) if worlds else ""
 
 
+def notes(
+    logs: Sequence[RobotLog],
+    games: Sequence[tuple[RobotLog, GameReplay]],
+    others: Sequence[GameWorld],
+) -> Iterator[str]:
+    """Tell what the figures of a report cover: visits, worlds, and the logs of several robots."""
+    yield from filter(None, [visiting_words([replay for _, replay in games])])
+    yield from filter(None, [others_words(others)])
+    if len(logs) > 1:
+        yield SAME_NAME
+
+
 def month_rows(months: Sequence[Month]) -> Iterator[tuple[str, ...]]:
     """Write one row for each month."""
     for month in months:
@@ -75,21 +91,28 @@ def month_rows(months: Sequence[Month]) -> Iterator[tuple[str, ...]]:
         yield (
             f"{calendar.month_name[month.month]} {month.year}",
             str(len(replays)),
+            played_words(replays),
             length(sum(replay.seconds for replay in replays)),
             str(len(people)),
-            str(sum(person.sum.requests for person in people)),
+            often(sum(person.sum.requests for person in people)),
             _usual(every),
-            ", ".join(never) or "nobody",
+            ", ".join(never) or ("nobody" if visiting(replays)[0] else NOTHING),
             f"{len(faults)}, {critical} critical" if critical else str(len(faults)),
             str(sum(not replay.game.smooth for replay in replays)),
         )
 
 
+def played_words(replays: Sequence[GameReplay]) -> str:
+    """Name what was played, and how often if more than once: "Trivia (twice), Bingo"."""
+    counts = Counter(replay.title for replay in replays)
+    return ", ".join(t if n == 1 else f"{t} ({often(n)})" for t, n in counts.items())
+
+
 def _usual(waits: Sequence[float]) -> str:
     if not waits:
-        return "\N{EN DASH}"
-    ordered = sorted(waits)
-    return f"{length(ordered[len(ordered) // 2])}, at most {length(ordered[-1])}"
+        return NOTHING
+    usual, most = length(median(waits)), length(max(waits))
+    return usual if usual == most else f"usually {usual}, at most {most}"
 
 
 def who_rows(people: Sequence[PersonOverTime]) -> Iterator[tuple[str, ...]]:
@@ -115,6 +138,7 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
         got = one.attention
         yield (
             on_day(one.at),
+            one.replay.title,
             asked_words(got),
             waited_words(got),
             visits_words(got),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from textwrap import wrap
 from typing import TypeVar
 
 from rich import box
@@ -45,14 +46,54 @@ def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
         yield from track(items, description=what, console=console, transient=True)
 
 
-def print_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a table without a title; nothing if there are no rows."""
+COLUMN_GAP = 3  # characters between two columns
+READABLE = 14
+"""The width below which a column of longer cells is hard to read."""
+NOTHING = ("", "\N{EN DASH}")
+
+
+def print_rows(columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> None:
+    """Print a table, or a paragraph for each row if its columns do not fit; nothing without rows.
+
+    Args:
+        columns: the headings of the columns.
+        rows: the cells of each row.
+        title: the heading above.
+    """
     if not rows:
+        return
+    console = Console(highlight=False)
+    if title:
+        console.print(Text(f"\n{title}"))
+    if sum(map(_least_width, zip(columns, *rows, strict=True))) > console.width:
+        for line in row_lines(columns, rows, console.width):
+            console.print(Text(line))
         return
     table = Table(*columns, box=box.SIMPLE_HEAD, title_justify="left", show_edge=False)
     for row in rows:
         table.add_row(*(Text(plain(cell)) for cell in row))
-    Console(highlight=False).print(table)
+    console.print(table)
+
+
+def _least_width(cells: Sequence[str]) -> int:
+    """Return the width that a column with these cells needs, in characters, with its gap."""
+    words = (len(word) for cell in cells for word in cell.split())
+    return max(*words, min(READABLE, max(map(len, cells))), 1) + COLUMN_GAP
+
+
+def row_lines(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[str]:
+    """Write each row as a paragraph of lines up to a width: its first cell, and then the others.
+
+    Empty cells are left out.
+    """
+    for row in rows:
+        yield plain(row[0])
+        told = [
+            f"{column}: {plain(cell)}"
+            for column, cell in zip(columns[1:], row[1:], strict=True)
+            if cell not in NOTHING
+        ]
+        yield from wrap("; ".join(told), width, initial_indent="  ", subsequent_indent="  ")
 
 
 """As many as a search of all games has."""

@@ -117,16 +117,18 @@ def report_person(
 
     logs = _read(data, also, activity)
     wanted, others = _world(logs, world)
-    people = people_over_time(of_world(logs, wanted))
-    person = _find(people, name)
+    person = _find(people_over_time(of_world(logs, wanted)), name)
+    games = [(one.log, one.replay) for one in person.games]
     if html is not None:
         _write(html, person_page(person, logs, wanted, others))
     if as_json:
         print_json({"world": wanted, **person.to_json()})
     elif html is None:
         print_line(plain(f"{person.name}: {text.scope(wanted, len(person.games))}"))
-        _print_rows(text.GAME_COLUMNS, text.game_rows(person.games))
-        _print_rows(text.STRATEGY_COLUMNS, text.strategy_rows(person))
+        _print_rows(text.GAME_COLUMNS, text.game_rows(person.games), text.GAMES)
+        _print_rows(text.STRATEGY_COLUMNS, text.strategy_rows(person), text.WORKS)
+        for line in text.notes(logs, games, others):
+            print_line(line)
 
 
 @app.command("house")
@@ -158,9 +160,12 @@ def report_house(
         print_json({"world": wanted, "months": months, "people": people_told})
     elif html is None:
         print_line(plain(f"{text.house_title(logs)}: {text.scope(wanted, len(games))}"))
-        _print_rows(text.MONTH_COLUMNS, text.month_rows(by_month(games)))
-        _print_rows(text.WHO_COLUMNS, text.who_rows(people))
-        for line in filter(None, [text.others_words(others)]):
+        _print_rows(text.MONTH_COLUMNS, text.month_rows(by_month(games)), text.MONTHS)
+        _print_rows(text.WHO_COLUMNS, text.who_rows(people), text.WHO)
+        _print_rows(text.FAULT_COLUMNS, text.fault_rows(games), text.FAULTS)
+        if len(logs) > 1:
+            _print_rows(text.ROBOT_COLUMNS, text.robot_rows(logs, wanted), text.ROBOTS)
+        for line in text.notes(logs, games, others):
             print_line(line)
 
 
@@ -266,7 +271,7 @@ def _write(html: Path, text: str) -> None:
     print_line(plain(report_in(html)))
 
 
-def _print_rows(columns: Sequence[str], rows: Iterator[tuple[str, ...]]) -> None:
+def _print_rows(columns: Sequence[str], rows: Iterator[tuple[str, ...]], title: str = "") -> None:
     from tangy_tui.ui.reports import print_rows
 
-    print_rows(columns, list(rows))
+    print_rows(columns, list(rows), title)
