@@ -175,7 +175,9 @@ class PastGame:
             behaviour = activity.behaviours.get(step.behaviour)
             called = behaviour is not None and behaviour.effect == "draw" and step.completed
             requests.step(step.state, step.after or step.state, called=called)
-            since = {person: since.get(person, over) for person in requests.people}
+            seen = {user.id for user in step.state.users if user.request == "AR"}
+            begun = over - (step.seconds or 0.0)
+            since = {p: since.get(p, begun if p in seen else over) for p in requests.people}
         return since
 
     def replay(self, world: ReplayedWorld) -> ActivityState:

@@ -325,6 +325,25 @@ def test_the_clock_of_a_resumed_live_game_counts_only_played_time(
     workspace.close()
 
 
+def test_a_request_seen_before_a_step_is_as_old_as_the_step(taught: Path) -> None:
+    workspace = Workspace(taught)
+    Robot(workspace).next(3)
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    last = past.steps[-1]
+    asking = last.state._replace(
+        users=tuple(
+            user._replace(request="AR" if user.id == "user3" else "ANR")
+            for user in last.state.users
+        ),
+    )
+    drive = replace(last, state=asking, after=None, seconds=33.0, clock=past.clock[-2] + 40.0)
+    long_drive = replace(past, steps=(*past.steps[:-1], drive))
+    since = long_drive.asked(workspace.activity)["user3"]
+    assert since == pytest.approx(long_drive.clock[-1] - 33.0)
+    workspace.close()
+
+
 def test_a_request_by_staff_stays_open_after_a_resume(taught: Path) -> None:
     workspace = Workspace(taught)
     before = Robot(workspace)
@@ -334,7 +353,7 @@ def test_a_request_by_staff_stays_open_after_a_resume(taught: Path) -> None:
     assert before.world.scene().requests == ("user3",)
     past = interrupted_game(workspace.store, workspace.activity.name)
     assert past is not None
-    assert past.asked(workspace.activity) == {"user3": past.clock[-1]}
+    assert past.asked(workspace.activity) == {"user3": pytest.approx(past.clock[2])}
     after = Robot(workspace, past)
     for _ in range(3):  # far longer than a sign may be hidden
         after.link.time += 60.0
