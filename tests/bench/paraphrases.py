@@ -2,10 +2,12 @@
 
 Run by hand: `python -m tests.bench.paraphrases`. The sentences of `sentences.py` at even places set
 the limits of `paraphrases` and `understanding`, the others are quoted; `--set` counts another one:
-`requests_second.toml` set no limit; `staff_sayings.toml` and
-`staff_requests.toml` became wordings of Bingo. `--noise` lets voices say the sentences, each one of
-them, clean or with white noise this many dB below, and decodes them. `--phrases` counts phrases and
-keywords alone, and `--show` lists the errors (of the sentences that set limits only).
+`requests_second.toml` set no limit; `staff_sayings.toml` and `staff_requests.toml` became wordings
+of Bingo; `requests_development.toml`, of three activities, may choose limits and templates.
+`--half` takes every second sentence of each list; the first half of the development set was looked
+at, the second only counted. `--noise` lets voices say the sentences, each one of them, clean or
+with white noise this many dB below, and decodes them. `--phrases` counts phrases and keywords
+alone, and `--show` lists the errors of sentences that may be looked at.
 """
 
 from __future__ import annotations
@@ -15,9 +17,9 @@ import os
 import tempfile
 import tomllib
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
@@ -34,9 +36,13 @@ from tests.bench.spoken_stops import VOICES, Said, Voices
 
 SETS = {
     "second": "requests_second.toml",
+    "development": "requests_development.toml",
     "staff": "staff_requests.toml",
     "sayings": "staff_sayings.toml",
 }
+SHOWN = {(name, half) for name in ("staff", "sayings") for half in (None, 0, 1)}
+SHOWN |= {("development", 0)}
+"""The sets, and halves of sets, whose errors may be looked at."""
 OUTCOMES = ("right", "offered", "wrong", "misled", "nothing")
 
 
@@ -57,20 +63,26 @@ def written_sentences(half: int) -> list[Sentence]:
     return [one for listed in (asked, *others) for one in listed[half::2]]
 
 
-def staff_sentences(file: Path) -> list[Sentence]:
-    """Return the sentences of a set in a file."""
+def sets_of(file: Path, part: slice) -> dict[str, list[Sentence]]:
+    """Return a part of each list of sentences in a file, by activity."""
     read = tomllib.loads(file.read_text(encoding="utf-8"))
+    by_activity = {"bingo": read} if "requests" in read else read
+    return {activity: _sentences_in(one, part) for activity, one in by_activity.items()}
+
+
+def _sentences_in(read: Mapping[str, Any], part: slice) -> list[Sentence]:
     found = [
         Sentence("paraphrase", text, behaviour)
         for behaviour, texts in read["requests"].items()
-        for text in texts
+        for text in texts[part]
     ]
     found += [
         Sentence("visit", text, "navigate to user", f"user{visit['person']}")
-        for visit in read["visits"]
-        for text in visit["says"]
+        for visit in read.get("visits", ())
+        for text in visit["says"][part]
     ]
-    return found + [Sentence(k, text, "") for k, texts in read["talk"].items() for text in texts]
+    talk = read["talk"].items()
+    return found + [Sentence(kind, text, "") for kind, texts in talk for text in texts[part]]
 
 
 def spoken(sentence: Sentence, book: Phrasebook) -> str:
@@ -165,19 +177,25 @@ def main() -> None:
     """Print the tables."""
     options = argparse.ArgumentParser(description="Measure what is understood of paraphrases.")
     options.add_argument("--set", choices=SETS)
+    options.add_argument("--half", type=int, choices=(0, 1), help="every second sentence of a set")
     options.add_argument("--noise", help="clean, or dB")
     options.add_argument("--phrases", action="store_true")
     options.add_argument("--show", action="store_true")
     chosen = options.parse_args()
     learnt = None if chosen.phrases else Intents().model
-    book = Phrasebook(load_activity("bingo"), load_room().placed(load_people(4)), learnt)
+    people = load_room().placed(load_people(4))
     if chosen.set:
-        sentences = staff_sentences(Path(__file__).parent / SETS[chosen.set])
-        if chosen.noise:
-            by_sound(sentences, book, chosen.noise)
-        else:
-            table(sentences, book, show=chosen.show and chosen.set != "second")
+        part = slice(None) if chosen.half is None else slice(chosen.half, None, 2)
+        show = chosen.show and (chosen.set, chosen.half) in SHOWN
+        for activity, sentences in sets_of(Path(__file__).parent / SETS[chosen.set], part).items():
+            print(activity)
+            book = Phrasebook(load_activity(activity), people, learnt)
+            if chosen.noise:
+                by_sound(sentences, book, chosen.noise)
+            else:
+                table(sentences, book, show=show)
         return
+    book = Phrasebook(load_activity("bingo"), people, learnt)
     for name, half in (("set the limits", 0), ("quoted", 1)):
         print(name)
         table(written_sentences(half), book, show=chosen.show and half == 0)

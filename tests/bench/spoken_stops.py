@@ -2,12 +2,13 @@
 
 Run by hand: `python -m tests.bench.spoken_stops` (needs flite, festival and espeak-ng). Figures are
 quoted on the sentences of `stop_fresh.toml` and `stop_unseen.toml`, which had set no limit and
-trained no model then. `--set` can also be one of the sets of `stop_sentences.toml`, with models
-trained on the others alone; the rules of `stop_sentence` know all four. Some of the voices say
-each sentence, in turn. White noise, or the babble of other voices, is added to whole sentences.
-Other talk has no request, or another request, and holds no word of stopping.
-Everything goes through the real decoder. A synthetic voice is not a person; those of espeak are the
-hardest to hear.
+trained no model then. `stop_development.toml` may choose limits and texts; the first half of each
+of its lists was looked at, the second only counted (`--half`). `--text` decodes nothing. `--set`
+can also be one of the sets of `stop_sentences.toml`, with models trained on the others alone; the
+rules of `stop_sentence` know all four. Some of the voices say each sentence, in turn. White noise,
+or the babble of other voices, is added to whole sentences. Other talk has no request, or another
+request, and holds no word of stopping. Everything goes through the real decoder. A synthetic voice
+is not a person; those of espeak are the hardest to hear.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ from tests.bench.stop_training import stop_examples
 
 HERE = Path(__file__).parent
 QUOTED = {"fresh": "stop_fresh.toml", "unseen": "stop_unseen.toml"}
+FILES = {**QUOTED, "development": "stop_development.toml"}
 FESTIVAL = {"kal_diphone": "kal_diphone", "slt_hts": "cmu_us_slt_arctic_hts"}
 VOICES = (
     *("slt", "rms", "awb", "kal", *FESTIVAL, "en-gb", "en-gb+m3", "en-us+f2"),
@@ -130,8 +132,11 @@ class Voices:
         return self._folder / f"{name}.wav"
 
 
-def count_texts(said: Sequence[Said]) -> None:
+def count_texts(said: Sequence[Said], *, show: bool = False) -> None:
     """Print how many of these sentences stop the robot as text."""
+    for one in said:
+        if show and is_stop(one.text, BOOK.game) != (one.kind == "stops"):
+            print(f"  text, {one.kind}: {one.text}")
     of = Counter(one.kind for one in said)
     stopped = Counter(one.kind for one in said if is_stop(one.text, BOOK.game))
     print("text:", *(f"{kind} {stopped[kind]} of {of[kind]}" for kind in sorted(of)))
@@ -140,24 +145,30 @@ def count_texts(said: Sequence[Said]) -> None:
 def main() -> None:
     """Print the table."""
     options = argparse.ArgumentParser(description="Count spoken stops.")
-    options.add_argument("--set", default="fresh", choices=(*QUOTED, *stop_sets()))
+    options.add_argument("--set", default="fresh", choices=(*FILES, *stop_sets()))
+    options.add_argument("--half", type=int, choices=(0, 1), help="every second sentence")
+    options.add_argument("--text", action="store_true", help="count the texts alone")
     options.add_argument("--voices", type=int, default=1, help="of each sentence")
     options.add_argument("--every", type=int, default=1, help="take every so many sentences alone")
     options.add_argument("--noises", nargs="*", default=("clean", "20", "10", "b10"))
     options.add_argument("--show", action="store_true", help="list what went wrong")
     chosen = options.parse_args()
-    if chosen.set in QUOTED:
-        read: Mapping[str, Any] = tomllib.loads((HERE / QUOTED[chosen.set]).read_text("utf-8"))
+    if chosen.set in FILES:
+        read: Mapping[str, Any] = tomllib.loads((HERE / FILES[chosen.set]).read_text("utf-8"))
     else:
         read = stop_sets()[chosen.set]
         use_model(train(stop_examples(chosen.set)))
+    if chosen.half is not None:
+        read = {kind: texts[chosen.half :: 2] for kind, texts in read.items()}
+    said = list(sayings(read, chosen.voices))[:: chosen.every]
+    count_texts(said, show=chosen.show)
+    if chosen.text:
+        return
     listened = wanted(BOOK, USUAL)
     texts = stop_texts(chosen.set)
     other_texts = (*other_stop_texts(chosen.set), *listened.no_stops[len(other_stop_texts()) :])
     decoder = make_decoder(replace(listened, stops=texts, no_stops=other_texts))
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are printed there
-    said = list(sayings(read, chosen.voices))[:: chosen.every]
-    count_texts(said)
     with tempfile.TemporaryDirectory() as folder:
         voices = Voices(Path(folder))
         voices.say(said)
