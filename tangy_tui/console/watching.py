@@ -12,6 +12,7 @@ from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.app.watching import WATCH_SECONDS, Guest, News, WatchedLog
 from tangy_tui.text import watching as text
+from tangy_tui.text.endings import ending_words
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
 
@@ -67,7 +68,7 @@ class WatchingLines:
                     for line in moment_lines(moment, news.replay.timed, news.activity, self._name):
                         self._write(plain(line))
                 if news.game.ended is not None:
-                    self._write(plain(news.game.ending))
+                    self._write(plain(ending_words(news.game)))
 
     def _tell_first(self) -> None:
         self._there = self.guest.look_first()

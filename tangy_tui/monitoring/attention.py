@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from statistics import median
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
@@ -65,11 +64,6 @@ class Attention:
     def longest(self) -> float | None:
         """The longest wait (s), including open requests; None if they never asked."""
         return max([*self.waits, *self.open], default=None)
-
-    @property
-    def median(self) -> float | None:
-        """The median wait (s) of the requests that Tangy answered; None if there are none."""
-        return median(self.waits) if self.waits else None
 
     def add(self, other: Attention) -> None:
         """Add the same person's attention in another game."""

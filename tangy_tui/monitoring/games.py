@@ -29,9 +29,6 @@ from tangy_tui.monitoring.fault import OPEN, Fault, read_faults
 SHORTEST = 4
 """Characters of an id that identify a game."""
 LAST, ALL = "last", "all"
-TO_ITS_END = "played to its end"
-ENDED_EARLY = "ended early: “{due}” was still to come"
-BROKEN_OFF = "it has no end in the log: it is still going on, or the program was broken off"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,17 +72,8 @@ class Game:
         """Whether it was played to its end."""
         return self.ended is not None and self.stopped is None and not self.due
 
-    @property
-    def ending(self) -> str:
-        """How it ended, in words."""
-        if self.ended is None:
-            return BROKEN_OFF
-        if self.stopped is not None:
-            return self.stopped
-        return ENDED_EARLY.format(due=self.due) if self.due else TO_ITS_END
-
     def to_json(self) -> dict[str, Any]:
-        """Return the game as `--json` lists it."""
+        """Return the game as `--json` lists it, without its ending in words."""
         return {
             "number": self.number,
             "id": self.id,
@@ -98,7 +86,6 @@ class Game:
             "faults": {"critical": self.critical, "other": self.other},
             "ended": self.ended and self.ended.isoformat(),
             "stopped": self.stopped,
-            "ending": self.ending,
             "due": self.due,
             "rounds_left": self.rounds_left,
             "world": self.world,

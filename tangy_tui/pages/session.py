@@ -24,6 +24,7 @@ from tangy_tui.pages.staff_parts import (
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 from tangy_tui.text import session_page as say
 from tangy_tui.text.activities import stage_words
+from tangy_tui.text.endings import all_endings, ending_sentence
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.report import WORLD_WORDS, care_lines, paused_words
@@ -135,9 +136,9 @@ def _head(session: Session, *, full: bool) -> Iterator[str]:
         ("How long", _how_long(session)),
     ]
     if len(games) == 1:
-        facts.append((say.ENDED, _sentence(games[0].ending)))
+        facts.append((say.ENDED, ending_sentence(games[0])))
     else:
-        facts.append((say.ALL_ENDED, _endings(session)))
+        facts.append((say.ALL_ENDED, all_endings(games)))
     facts.append(("Faults", _fault_sum(session)))
     rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in facts)
     yield f"<dl>{rows}</dl>"
@@ -166,19 +167,7 @@ def _how_long(session: Session) -> str:
     if not session.timed:
         return "not known: an older Tangy kept no times within a game"
     paused = paused_words(session.staff_pauses)
-    return f"{length(session.seconds)} in the time of the room{paused}"
-
-
-def _endings(session: Session) -> str:
-    endings = [game.ending for game in session.games]
-    counts = {words: endings.count(words) for words in dict.fromkeys(endings)}
-    return " ".join(
-        f"{count} of {len(endings)}: {words.rstrip('.')}." for words, count in counts.items()
-    )
-
-
-def _sentence(words: str) -> str:
-    return words[:1].upper() + words[1:] + ("" if words.endswith((".", "!", "?")) else ".")
+    return f"{length(session.seconds)}{paused}"
 
 
 def _care(session: Session) -> Iterator[str]:
@@ -216,7 +205,7 @@ def _timelines(session: Session, most: int) -> Iterator[str]:
             yield '<div class="game">'
         if len(session.replays) > 1:
             yield game_part(replay)
-            yield paragraph(_sentence(replay.game.ending))
+            yield paragraph(ending_sentence(replay.game))
         if not index or replay.game.activity != played:  # stages of the same name may differ
             played = replay.game.activity
             same = [r for r in session.replays if r.game.activity == played]

@@ -21,9 +21,9 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
-from tangy_tui.monitoring.games import ENDED_EARLY
 from tangy_tui.text.changes import changed_lines
 from tangy_tui.text.decisions import HOW_SURE, addressed_words, because_words, why_words
+from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted, of_times, often

@@ -5,7 +5,6 @@ from __future__ import annotations
 import calendar
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from statistics import median
 
 from tangy_profiles.game_world import GameWorld
 from tangy_tui.monitoring.attention import visiting
@@ -19,6 +18,7 @@ from tangy_tui.text.report import (
     helped_words,
     response_words,
     time_words,
+    usual_words,
     visiting_words,
     visits_words,
     waited_words,
@@ -42,7 +42,7 @@ GAME_COLUMNS = (
     "help given", "did as asked", "won",
 )  # fmt: skip
 WORKS = "What works"
-STRATEGY_COLUMNS = ("way of asking", "asked", "did it in time", "share")
+STRATEGY_COLUMNS = ("way of asking", "asked", "did it in time", "did it late", "share in time")
 FAULTS = "What went wrong, and how often"
 FAULT_COLUMNS = ("fault", "times", "critical", "last")
 ROBOTS = "Robots"
@@ -95,7 +95,7 @@ def month_rows(months: Sequence[Month]) -> Iterator[tuple[str, ...]]:
             length(sum(replay.seconds for replay in replays)),
             str(len(people)),
             often(sum(person.sum.requests for person in people)),
-            _usual(every),
+            usual_words(every) if every else NOTHING,
             ", ".join(never) or ("nobody" if visiting(replays)[0] else NOTHING),
             f"{len(faults)}, {critical} critical" if critical else str(len(faults)),
             str(sum(not replay.game.smooth for replay in replays)),
@@ -106,13 +106,6 @@ def played_words(replays: Sequence[GameReplay]) -> str:
     """Name what was played, and how often if more than once: "Trivia (twice), Bingo"."""
     counts = Counter(replay.title for replay in replays)
     return ", ".join(t if n == 1 else f"{t} ({often(n)})" for t, n in counts.items())
-
-
-def _usual(waits: Sequence[float]) -> str:
-    if not waits:
-        return NOTHING
-    usual, most = length(median(waits)), length(max(waits))
-    return usual if usual == most else f"usually {usual}, at most {most}"
 
 
 def who_rows(people: Sequence[PersonOverTime]) -> Iterator[tuple[str, ...]]:
@@ -151,14 +144,15 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
 
 def strategy_rows(person: PersonOverTime) -> Iterator[tuple[str, ...]]:
     """Write one row for each strategy: how often it was used, and how often it worked."""
-    used: Counter[str] = Counter()
-    did: Counter[str] = Counter()
-    for answer in person.answers:
-        if answer.complied is not None:
-            used[answer.strategy] += 1
-            did[answer.strategy] += answer.complied
+    known = [answer for answer in person.answers if answer.complied is not None]
+    used = Counter(answer.strategy for answer in known)
+    did = Counter(answer.strategy for answer in known if answer.complied)
+    late = Counter(one.strategy for one in known if not one.complied and one.followed)
     for strategy, times in used.most_common():
-        yield strategy, str(times), str(did[strategy]), f"{did[strategy] / times:.0%}"
+        yield (
+            strategy, str(times), str(did[strategy]), str(late[strategy]),
+            f"{did[strategy] / times:.0%}",
+        )  # fmt: skip
 
 
 def fault_rows(games: Sequence[tuple[RobotLog, GameReplay]]) -> Iterator[tuple[str, ...]]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_profiles.robot import Robot
+from tangy_tui.text.endings import ending_words
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -71,7 +72,7 @@ def switch_on_words(robot: str) -> str:
 def played_lines(games: Sequence[Game], since: datetime, report: str) -> list[str]:
     """Tell how the games ended that ended `since` a time, and which command is for the report."""
     over = [game for game in games if game.ended is not None and game.ended >= since]
-    lines = [f"Game {game.number}: {game.ending.rstrip('.')}." for game in over]
+    lines = [f"Game {game.number}: {ending_words(game).rstrip('.')}." for game in over]
     return [*lines, report_words(report)] if over else []
 
 

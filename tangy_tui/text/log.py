@@ -9,11 +9,12 @@ from tangy_profiles.game_records import CallMade, GameChange
 from tangy_tui.monitoring.attention import attention
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
-from tangy_tui.monitoring.games import TO_ITS_END, Game
+from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted, Unclear
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
+from tangy_tui.text.endings import TO_ITS_END, ending_sentence, ending_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted, of_times, often
 from tangy_tui.text.player_facts import HEADING, in_game_words, player_lines
@@ -58,7 +59,7 @@ def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> I
         yield "An older Tangy kept no times within a game: what is given is the time of day alone."
     for moment in replay.moments:
         yield from moment_lines(moment, replay.timed, activity, name)
-    yield f"{counted(game.steps, 'step')}; {game.ending}"
+    yield f"{counted(game.steps, 'step')}; {ending_words(game)}"
 
 
 def moment_lines(
@@ -138,7 +139,7 @@ def session_lines(session: Session) -> Iterator[str]:
     yield from _games_lines(session.replays)
     if session.timed:
         paused = paused_words(session.staff_pauses)
-        yield f"Time in the room: {length(session.seconds)}{paused}."
+        yield f"How long: {length(session.seconds)}{paused}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield from changes_lines(session.replays, session.name)
     found = attention(session.replays).values()
@@ -206,10 +207,8 @@ def _games_lines(replays: Sequence[GameReplay]) -> Iterator[str]:
         if told:
             yield "Those with faults, or that did not go to their end:"
     for game in told:
-        words = f"{counted(game.steps, 'step')}. {game.ending[:1].upper()}{game.ending[1:]}"
-        yield f"{game_words(game, activities[game.id])}: {words}" + (
-            "" if words.endswith(".") else "."
-        )
+        steps = counted(game.steps, "step")
+        yield f"{game_words(game, activities[game.id])}: {steps}. {ending_sentence(game)}"
     if len(told) < len(games):
         rest = counted(len(games) - len(told), "game")
         other = "other " if told else ""

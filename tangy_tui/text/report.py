@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from statistics import median_low
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
@@ -69,14 +70,19 @@ def asked_words(one: Attention) -> str:
 
 def waited_words(one: Attention) -> str:
     """Tell how long a person waited: each of a few waits, or the median and the longest wait."""
-    if one.longest is None or one.median is None:
+    if one.longest is None or not one.waits:
         more = f", {NOT_REACHED}" if one.open else ""
         return f"{length(one.longest)}{more}" if one.longest is not None else "\N{EN DASH}"
     more = f"; {often(len(one.open))} {NOT_REACHED}" if one.open else ""
     if one.requests <= FEW_WAITS:
         return listed(map(length, [*one.waits, *one.open])) + more
-    usual, most = length(one.median), length(one.longest)
-    return (usual if usual == most else f"usually {usual}, at most {most}") + more
+    return usual_words([*one.waits, *one.open]) + more
+
+
+def usual_words(waits: Sequence[float]) -> str:
+    """Tell within which time (s) half of many waits were over, and the longest one."""
+    half, most = length(median_low(waits)), length(max(waits))
+    return half if half == most else f"half within {half}, at most {most}"
 
 
 def visits_words(one: Attention) -> str:
@@ -100,15 +106,19 @@ def helped_words(one: Attention, activities: Iterable[Activity]) -> str:
 
 
 def response_words(answers: Sequence[AnsweredRequest]) -> str:
-    """Tell how often a person complied, "4 of 5", and how often that is unknown."""
-    known = [one for one in answers if one.complied is not None]
+    """Tell how often a person complied: "3 of 5, 1 late, 1 not known"."""
     if not answers:
         return "\N{EN DASH}"
-    done = sum(bool(one.complied or one.followed) for one in known)
-    unknown = len(answers) - len(known)
-    words = f"{done} of {len(known)}" if known else ""
-    more = f"{often(unknown)} not known" if unknown else ""
-    return ", ".join(filter(None, (words, more)))
+    in_time = sum(one.complied is True for one in answers)
+    late = sum(one.complied is False and bool(one.followed) for one in answers)
+    unknown = sum(one.complied is None for one in answers)
+    known = len(answers) - unknown
+    words = (
+        f"{in_time} of {known}" if known else "",
+        f"{late} late" if late else "",
+        f"{unknown} not known" if unknown else "",
+    )
+    return ", ".join(filter(None, words))
 
 
 def people_table(session: Session) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
@@ -258,8 +268,10 @@ def _staff_words(moment: Moment, name: Name) -> tuple[str, str] | None:
 
 def fault_outcome(fault: Fault, status: str) -> str:
     """Describe how a fault ended: the last move, and its status."""
-    told = [move_words(move) for move in fault.moves]
-    return "; ".join(dict.fromkeys([*told[-1:], status]))
+    told = [move_words(move) for move in fault.moves][-1:]
+    if told and status in told[0]:
+        return told[0]
+    return "; ".join([*told, status])
 
 
 def call_rows(session: Session) -> list[tuple[Game, list[tuple[str, bool]]]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, assert_never
 
 from tangy_profiles.reading import plain
+from tangy_tui.text.endings import ending_words
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import FaultStatus
@@ -48,4 +49,7 @@ def unknown_words(activity: str) -> str:
 
 def session_document(session: Session) -> dict[str, Any]:
     """Return a session as one JSON document, with its notes in words."""
-    return {**session.to_json(), "notes": [note_words(note) for note in session.notes]}
+    told = session.to_json()
+    for game, document in zip(session.games, told["games"], strict=True):
+        document["ending"] = ending_words(game)
+    return {**told, "notes": [note_words(note) for note in session.notes]}

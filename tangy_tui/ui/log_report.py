@@ -13,6 +13,7 @@ from rich.text import Text
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import Game
+from tangy_tui.text.endings import ending_words
 from tangy_tui.text.games import NONE_YET
 from tangy_tui.text.log import HOW_TO_GO_ON
 from tangy_tui.text.times import local_time
@@ -55,7 +56,7 @@ def print_games(games: Sequence[Game]) -> None:
     console.print(table)
     for game in games:
         if game.ended is None or game.stopped is not None or game.due:
-            console.print(Text(plain(f"Game {game.number}: {game.ending}")))
+            console.print(Text(plain(f"Game {game.number}: {ending_words(game)}")))
     console.print(Text(HOW_TO_GO_ON))
 
 

@@ -25,10 +25,10 @@ from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.monitoring.games import ENDED_EARLY
 from tangy_tui.text.activities import whom_words
 from tangy_tui.text.activity_search import proof_words
 from tangy_tui.text.demonstrations import NONE_YET
+from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.people import COMPLIED
 from tangy_tui.text.situations import agreement_words, conflict_lines

@@ -56,7 +56,9 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
     with open_log(data) as (store, _):
         games = read_games(store)
     if as_json:
-        print_json([game.to_json() for game in games])
+        from tangy_tui.text.endings import game_document
+
+        print_json([game_document(game) for game in games])
         return
     from tangy_tui.text.old_games import unknown_words
     from tangy_tui.ui.log_report import print_games
@@ -207,8 +209,10 @@ def _say_unknown(games: Sequence[Game], known: dict[str, Activity]) -> None:
 
 
 def _document(replay: GameReplay) -> dict[str, Any]:
+    from tangy_tui.text.endings import game_document
+
     return {
-        **replay.game.to_json(),
+        **game_document(replay.game),
         "seconds": replay.seconds if replay.timed else None,
         "moments": [_moment(moment, replay.timed) for moment in replay.moments],
         "fault_list": [fault.document() for fault in replay.faults],

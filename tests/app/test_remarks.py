@@ -40,6 +40,7 @@ from tangy_tui.learning.teaching_events import (
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.monitoring.games import read_games
+from tangy_tui.text.endings import ending_words
 from tangy_tui.text.games import ended_words
 from tangy_tui.text.teaching import complete_words
 from tests.support.games import ended, play
@@ -190,7 +191,7 @@ def test_an_early_goodbye_is_told_in_teaching_and_in_the_games_that_follow(
     assert (over.due, over.rounds_left) == ("ask question", 6)
     assert ended_words(over).endswith("“ask question” was still to come. 6 rounds were left.")
     (game,) = read_games(silent.store)
-    assert game.ending == "ended early: “ask question” was still to come"
+    assert ending_words(game) == "ended early: “ask question” was still to come"
     assert not game.smooth
 
 

@@ -92,7 +92,7 @@ def test_a_wait_ends_on_the_arrival_of_the_robot() -> None:
 def test_an_unvisited_person_waits_to_the_end() -> None:
     replay = replay_of(state(FRONT), state(FRONT, ["bob"]), state(FRONT, ["bob"]))
     bob = attention_in(replay)["bob"]
-    assert (bob.waits, bob.open, bob.longest, bob.median) == ([], [10.0], 10.0, None)
+    assert (bob.waits, bob.open, bob.longest) == ([], [10.0], 10.0)
 
 
 def test_calls_first_does_not_interrupt_a_wait() -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
@@ -13,8 +15,15 @@ from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.monitoring.attention import Attention, visiting
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.people_progress import people_progress
-from tangy_tui.monitoring.replay import GameReplay, read_replays
-from tangy_tui.text.report import attention_lines, care_lines, visiting_words
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
+from tangy_tui.text.endings import all_endings, ending_sentence
+from tangy_tui.text.report import (
+    attention_lines,
+    care_lines,
+    response_words,
+    visiting_words,
+    waited_words,
+)
 from tangy_tui.text.results import progress_line
 from tests.monitoring.conftest import Supervise
 from tests.support.games import play
@@ -82,3 +91,35 @@ def test_the_report_names_the_activities_in_which_tangy_goes_to_people(
     assert "Trivia" not in alone
     assert told.startswith("Tangy never went to Ann in Bingo") and "Trivia" in told
     assert visiting_words(mixed) in attention_lines([ann], str, mixed)[-1]
+
+
+def test_games_that_ended_alike_are_named_together(replays: list[GameReplay]) -> None:
+    one = replays[0].game
+    left = replace(one, number=2, stopped="It was left before its end.")
+    games = [replace(one, number=1), left, replace(one, number=3)]
+    played = ending_sentence(one)
+    assert all_endings(games) == f"Games 1 and 3: {played} Game 2: It was left before its end."
+    assert all_endings([left]) == "Game 2: It was left before its end."
+
+
+def test_a_late_response_is_not_told_as_done_in_time() -> None:
+    def answer(complied: bool | None, *, followed: bool | None = None) -> AnsweredRequest:
+        return cast(AnsweredRequest, SimpleNamespace(complied=complied, followed=followed))
+
+    late = answer(False, followed=True)
+    assert response_words([answer(True), late, answer(False, followed=False)]) == "1 of 3, 1 late"
+    assert response_words([late, answer(None)]) == "0 of 1, 1 late, 1 not known"
+    assert response_words([answer(None)]) == "1 not known"
+
+
+@pytest.mark.parametrize(
+    ("waits", "words"),
+    [
+        ([30.0], "30 s"),
+        ([10.0, 50.0, 20.0], "10 s, 50 s and 20 s"),
+        ([10.0, 20.0, 40.0, 50.0], "half within 20 s, at most 50 s"),
+        ([20.0, 20.0, 20.0, 20.0], "20 s"),
+    ],
+)
+def test_every_wait_that_is_told_is_one_of_the_log(waits: list[float], words: str) -> None:
+    assert waited_words(Attention("ann", waits=waits)) == words

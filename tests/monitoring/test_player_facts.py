@@ -27,7 +27,7 @@ from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.house import by_month, of_world, read_log
 from tangy_tui.monitoring.session import Session, read_session
 from tangy_tui.pages.session import session_page
-from tangy_tui.text.house import MONTH_COLUMNS, month_rows
+from tangy_tui.text.house import MONTH_COLUMNS, NOTHING, month_rows
 from tangy_tui.text.log import session_lines
 from tangy_tui.text.player_facts import HEADING
 from tangy_tui.text.report import call_rows, care_lines, people_table
@@ -151,12 +151,14 @@ def test_people_are_missed_only_if_tangy_visits_people(quiz: Quiz, activity: Act
     columns, rows = people_table(trivia)
     assert not {"visits", "time with Tangy", "did as asked", "won"} & {*columns}
     assert len(rows) == len(PEOPLE) and {*map(len, rows)} == {len(columns)}
-    assert not any(name in line for line in session_lines(trivia) for name in ("Not asked", "vain"))
+    assert not any(
+        name in line for line in session_lines(trivia) for name in ("Not asked", "asks at most")
+    )
     unknown = read_session(quiz.store, read_games(quiz.store), {}, {})
     assert all(one.never_visited for one in attention(unknown.replays).values())
     log = read_log(quiz.store, {}, {"trivia": quiz.activity})
     (month,) = month_rows(by_month(of_world([log], LIVE)))
-    assert month[MONTH_COLUMNS.index("never visited")] == "nobody"
+    assert month[MONTH_COLUMNS.index("never visited")] == NOTHING
     both = Attention("ann", could_visit=False)
     both.add(Attention("ann"))
     assert both.never_visited, "in one of the games Tangy visits people"

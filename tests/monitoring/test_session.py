@@ -19,11 +19,12 @@ from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
-from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
+from tangy_tui.monitoring.games import find_game, find_games, read_games
 from tangy_tui.monitoring.people_progress import RESULTS
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted, read_replays
 from tangy_tui.monitoring.session import Session, SessionNote, read_session
 from tangy_tui.pages.session import session_page
+from tangy_tui.text.endings import BROKEN_OFF, ending_words
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
 from tangy_tui.text.results import RESULT_WORDS
 from tests.monitoring.conftest import Supervise
@@ -285,7 +286,7 @@ def test_an_interrupted_game_is_marked(workspace: Workspace, supervise: Supervis
     for _ in range(5):
         game.step()
     (found,) = read_games(workspace.store)
-    assert (found.steps, found.ended, found.ending) == (5, None, BROKEN_OFF)
+    assert (found.steps, found.ended, ending_words(found)) == (5, None, BROKEN_OFF)
     assert BROKEN_OFF[1:] in session_page(told(workspace))
     play(supervise(seed=2))
     assert [g.ended is None for g in read_games(workspace.store)] == [True, False]

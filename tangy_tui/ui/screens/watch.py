@@ -20,6 +20,7 @@ from tangy_tui.app.watching import WATCH_SECONDS, Guest, NobodyThere, WatchedLog
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted, Unclear
 from tangy_tui.text import watching as text
+from tangy_tui.text.endings import ending_words
 from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
@@ -145,7 +146,7 @@ class WatchScreen(TangyScreen[None]):
                 for room in self.query(RoomView):
                     room.say(moment.what.said)
         if news.game.ended is not None:
-            log.write(news.game.ending, "good" if news.game.smooth else "bad")
+            log.write(ending_words(news.game), "good" if news.game.smooth else "bad")
 
     async def _show_room(self) -> None:
         view = self._view
