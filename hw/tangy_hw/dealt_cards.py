@@ -58,6 +58,13 @@ class DealtCards:
         """Assign cards; earlier assignments no longer hold."""
         self._given, self._learnt = dict(cards), {}
 
+    def recall(self, given: Mapping[str, int], learnt: Mapping[str, int]) -> None:
+        """Assign the cards of an interrupted game, where no newer assignment says otherwise."""
+        for known, cards in ((self._given, given), (self._learnt, learnt)):
+            for person, card in cards.items():
+                if self.card_of(person) is None and not self.owner(card):
+                    known[person] = card
+
     def give(self, person: str, card: int | None) -> None:
         """Assign a card to a person; None: it is learnt again.
 

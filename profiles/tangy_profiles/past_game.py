@@ -7,7 +7,7 @@ the earlier games in the same run, a world can restore the state.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Protocol
 
@@ -18,6 +18,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.known_cards import KnownCards
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT, ActivityState, Outcome, UserState
 from tangy_profiles.store import Event, Store
@@ -116,6 +117,8 @@ class PastGame:
     """The time played at staff's last logged action, in s."""
     asked_for: tuple[str, ...] = ()
     """For whom staff asked for help so late that no step shows it, in order."""
+    cards: KnownCards = field(default_factory=KnownCards)
+    """Whose card was known in this game."""
 
     @property
     def world(self) -> GameWorld:
@@ -327,6 +330,7 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         changes,
         acted=acted,
         asked_for=_asked_for(acts, last),
+        cards=KnownCards.of(notes),
     )
 
 

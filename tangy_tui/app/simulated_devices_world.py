@@ -25,6 +25,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
+from tangy_profiles.known_cards import KnownCards
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.device_simulator.tablet import Tablet
@@ -142,6 +143,9 @@ class BenchedWorld(LiveWorld):
         left, self._left = self._left, None
         self._to_come = ToCome(self.injections if left is None else left, self._chance)
         return state
+
+    def _recall(self, cards: KnownCards) -> None:
+        """Know nothing again: a bench that was started anew has dealt other cards."""
 
     def carry_over(self, before: BenchedWorld) -> None:
         """Inject only the faults still to come if the game of a world `before` is resumed here."""

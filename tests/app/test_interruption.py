@@ -25,7 +25,14 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
-from tangy_tui.app.game_commands import AskFor, GoesAway, GoOn, StopRobot, TakeBackCall
+from tangy_tui.app.game_commands import (
+    AskFor,
+    GoesAway,
+    GoOn,
+    HasCard,
+    StopRobot,
+    TakeBackCall,
+)
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import can_join, end_interrupted, find_interrupted, take_up
 from tangy_tui.app.joining import let_join
@@ -241,6 +248,22 @@ def test_a_resumed_live_game_keeps_the_order_of_its_numbers(taught: Path) -> Non
     for robot in (before, after):
         robot.next(4)
     assert after.world.called == gone and len(after.world.called) > len(called)
+    workspace.close()
+
+
+def test_a_resumed_live_game_knows_whose_card_it_is(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(3)
+    card, other = 17, 31
+    before.control.apply(HasCard("user3", card))
+    before.control.note("card learnt", person="user2", detail=str(other))
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    after = Robot(workspace, past)
+    dealt = after.world.cards.dealt
+    assert (dealt.card_of("user3"), dealt.card_of("user2")) == (card, other)
+    assert dict(dealt.given) == {"user3": card}
     workspace.close()
 
 

@@ -182,3 +182,11 @@ def test_a_card_given_by_staff_overrides_the_seen_one() -> None:
     assert dealt.card_of("user1") is None and dealt.learn("user1", FOREIGN)
     dealt.deal({"user1": OWN})
     assert (dealt.card_of("user1"), dealt.card_of("user2")) == (OWN, None)
+
+
+def test_cards_of_an_interrupted_game_give_way_to_newer_ones() -> None:
+    dealt = DealtCards()
+    dealt.deal({"user1": OWN})
+    dealt.recall({"user1": NEIGHBOURS, "user2": OWN, "user3": FOREIGN}, {"user4": NEIGHBOURS})
+    assert [dealt.card_of(person) for person in PEOPLE] == [OWN, None, FOREIGN, NEIGHBOURS]
+    assert dict(dealt.given) == {"user1": OWN, "user3": FOREIGN}

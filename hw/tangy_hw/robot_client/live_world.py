@@ -31,6 +31,7 @@ from tangy_profiles.effects import DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import LIVE, GameWorld
 from tangy_profiles.health import Health
+from tangy_profiles.known_cards import KnownCards
 from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.robot import Robot
@@ -120,7 +121,7 @@ class LiveWorld(LivePlan):
         return self.observe()
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Resume an interrupted game, or raise NotResumable; cards are learnt again."""
+        """Resume an interrupted game, or raise NotResumable."""
         for _ in range(past.beginning.number):
             self._begin()  # each game of the run has its own order
         past.follow(self.tracker, self.change)
@@ -129,10 +130,15 @@ class LiveWorld(LivePlan):
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
+        self._recall(past.cards)
         self.over = False
         self.commands.settle()
         self.commands.await_tablets()
         return self.observe()
+
+    def _recall(self, cards: KnownCards) -> None:
+        """Know again whose card it was in an interrupted game."""
+        self.cards.dealt.recall(cards.given, cards.seen)
 
     @property
     def called(self) -> list[int]:
