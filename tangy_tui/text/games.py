@@ -144,13 +144,16 @@ NEVER_ASKED = "Tangy has asked for nothing yet, so it does not know what works."
 
 
 def belief_lines(supervision: Supervision, name: Name) -> list[str]:
-    """Format each person's posteriors as a line."""
+    """Format each person's posteriors as a line; none if Tangy asks people for nothing."""
     lines: list[str] = []
+    behaviours = supervision.world.activity.behaviours.values()
+    if not any(behaviour.persuades for behaviour in behaviours):
+        return lines
     for person, profile in supervision.persuasion.beliefs.items():
         best = probability_best(profile)
         parts = [
-            f"{strategy} worked {belief.complied} of {counted(belief.trials, 'time')} "
-            f"(the best way, at {best[strategy]:.0%})"
+            f"{strategy} worked {of_times(belief.complied, belief.trials)} "
+            f"({best[strategy]:.0%} likely to be the best way)"
             for strategy, belief in profile.items()
             if belief.trials
         ]

@@ -109,12 +109,12 @@ def response_words(answers: Sequence[AnsweredRequest]) -> str:
     """Tell how often a person complied: "3 of 5, 1 late, 1 not known"."""
     if not answers:
         return "\N{EN DASH}"
-    in_time = sum(one.complied is True for one in answers)
-    late = sum(one.complied is False and bool(one.followed) for one in answers)
-    unknown = sum(one.complied is None for one in answers)
-    known = len(answers) - unknown
+    known = [one for one in answers if one.complied is not None]
+    in_time = sum(bool(one.complied) for one in known)
+    late = sum(bool(one.followed) and not one.complied for one in known)
+    unknown = len(answers) - len(known)
     words = (
-        f"{in_time} of {known}" if known else "",
+        f"{in_time} of {len(known)}" if known else "",
         f"{late} late" if late else "",
         f"{unknown} not known" if unknown else "",
     )
@@ -209,7 +209,7 @@ def attention_lines(
 
 
 def _asked_line(one: Attention, name: Name) -> str:
-    told = f"  {name(one.id)} {often(one.requests)}: waited {waited_words(one)}"
+    told = f"  {name(one.id)} {often(one.requests)}, waited: {waited_words(one)}"
     if not one.could_visit:
         return told
     visited = f"{counted(one.visits, 'visit')}, {length(one.seconds)} in all"

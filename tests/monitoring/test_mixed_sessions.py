@@ -16,7 +16,9 @@ from tangy_tui.monitoring.attention import Attention, visiting
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.people_progress import people_progress
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
+from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.endings import all_endings, ending_sentence
+from tangy_tui.text.games import belief_lines
 from tangy_tui.text.report import (
     attention_lines,
     care_lines,
@@ -108,6 +110,8 @@ def test_a_late_response_is_not_told_as_done_in_time() -> None:
 
     late = answer(False, followed=True)
     assert response_words([answer(True), late, answer(False, followed=False)]) == "1 of 3, 1 late"
+    as_in_the_log = [*map(answer, (1, 0)), answer(0, followed=True)]  # SQLite knows no booleans
+    assert response_words(as_in_the_log) == "1 of 3, 1 late"
     assert response_words([late, answer(None)]) == "0 of 1, 1 late, 1 not known"
     assert response_words([answer(None)]) == "1 not known"
 
@@ -123,3 +127,13 @@ def test_a_late_response_is_not_told_as_done_in_time() -> None:
 )
 def test_every_wait_that_is_told_is_one_of_the_log(waits: list[float], words: str) -> None:
     assert waited_words(Attention("ann", waits=waits)) == words
+
+
+def test_what_works_is_told_only_where_tangy_asks_people_for_something() -> None:
+    def played(activity: str) -> Supervision:
+        world = SimpleNamespace(activity=load_activity(activity))
+        persuasion = SimpleNamespace(beliefs={"Ann": {}})
+        return cast(Supervision, SimpleNamespace(world=world, persuasion=persuasion))
+
+    assert belief_lines(played("trivia"), str) == []
+    assert len(belief_lines(played("bingo"), str)) == 1
