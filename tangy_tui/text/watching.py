@@ -70,6 +70,11 @@ def driver_words(view: GameView) -> str:
     return f"{view.driver} runs the game, {WORLDS[view.world]}"
 
 
+def world_and_driver(view: GameView) -> str:
+    """Tell the same in short, the world first: it matters most if there is little room."""
+    return f"{WORLDS[view.world]}, run by {view.driver}"
+
+
 def robot_words(view: GameView) -> str:
     """Tell the state of the robot as the console that runs the game does: a STOP comes first."""
     halted = view.robot == "HALTED"

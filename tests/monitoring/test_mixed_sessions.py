@@ -105,7 +105,7 @@ def test_games_that_ended_alike_are_named_together(replays: list[GameReplay]) ->
 
 
 def test_a_late_response_is_not_told_as_done_in_time() -> None:
-    def answer(complied: bool | None, *, followed: bool | None = None) -> AnsweredRequest:
+    def answer(complied: int | None, *, followed: bool | None = None) -> AnsweredRequest:
         return cast(AnsweredRequest, SimpleNamespace(complied=complied, followed=followed))
 
     late = answer(False, followed=True)

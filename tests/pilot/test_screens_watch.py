@@ -20,7 +20,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
-from tangy_tui.text.watching import NO_GAME, PHASES, robot_words
+from tangy_tui.text.watching import NO_GAME, PHASES, WORLDS, robot_words
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -126,6 +126,7 @@ async def test_the_status_line_tells_why_tangy_does_nothing(
         assert control.phase == phase
         assert (status.status.stage, status.status.robot) == (STAGES[phase], "OK")
         assert STAGES[phase] in pilot.text()
+        assert WORLDS[control.supervision.world.played_in] in pilot.text()  # it is not cut
 
 
 def test_a_stop_does_not_hide_a_fault_that_halts_the_robot(control: GameController) -> None:

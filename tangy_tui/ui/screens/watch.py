@@ -203,7 +203,7 @@ class WatchScreen(TangyScreen[None]):
                 stage=text.stage_words(view),
                 game=view.number,
                 step=view.step,
-                note=text.driver_words(view),
+                note=text.world_and_driver(view),
                 alarm=robot != "OK" and not robot.startswith(WAITS),
             )
         )
