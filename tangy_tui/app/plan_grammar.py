@@ -30,7 +30,7 @@ _MOVED = re.compile(
     rf"(?:(here)|left) (.+)|(.+?) (?:({_COMES})|{_GOES})(?: now| too| again| home| away)?", re.I
 )
 _JOINS = re.compile(
-    r"(?:(add|guest)(?: (.+?))?|(.+?) joins(?: in| us)?)"
+    r"(?:(add|guest)(?: (.+?))?|([^:]+?) joins(?: in| us)?)"
     r"(?:,? (?:at|on|in|to) (?:(table) |seat |chair |place )(\d{1,2}))?",
     re.I,
 )

@@ -106,6 +106,10 @@ def test_staff_say_who_joins(typed: str, joins: Joins) -> None:
     assert read_command(typed, str) == joins
 
 
+def test_a_fact_called_joins_is_no_new_person() -> None:
+    assert not isinstance(read_command("user2: joins", str), Joins)
+
+
 def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> None:
     workspace = Workspace(taught)
     before = LiveGame(workspace)
