@@ -21,6 +21,7 @@ from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.camera_devices import list_cameras
 from tangy_profiles.contacts import EXPERT
 from tangy_profiles.errors import TangyError
+from tangy_profiles.process_log import LEVEL
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.log_check import log_problems
@@ -149,6 +150,8 @@ def examine_robot(
     from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.robot_process.self_test import try_robot
 
+    # Children of the drivers write their log to this terminal, among the findings.
+    os.environ.setdefault(LEVEL, "WARNING")
     pairing = {}
     if folder is not None and any(driver.kind == "page" for driver in robot.drivers.values()):
         with suppress(OSError):  # the chest screen's code must be stored before it is printed

@@ -10,8 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tangy_hw.drivers import registry
+from tangy_hw.drivers.registry import DriverKind
 from tangy_hw.robot_process.self_test import SelfTestResult, try_robot
 from tangy_profiles.activity import load_activity
+from tangy_profiles.health import NEVER, OK, Reading
 from tangy_profiles.robot import Robot, load_robot
 from tangy_sim.servers.scip_server import ScipServer
 
@@ -46,6 +49,55 @@ def turning(server: ScipServer) -> Iterator[None]:
     task = asyncio.create_task(turn())
     yield
     task.cancel()
+
+
+class Cell:
+    """A battery of another package; `start` and `reading` raise what they are told to."""
+
+    def __init__(self, name: str, reading: Reading | Exception, start: Exception | None) -> None:
+        self.name, self._reading, self._start = name, reading, start
+
+    async def start(self) -> None:
+        if self._start is not None:
+            raise self._start
+
+    async def close(self) -> None:
+        pass
+
+    def reading(self) -> Reading:
+        if isinstance(self._reading, Exception):
+            raise self._reading
+        return self._reading
+
+
+@pytest.mark.parametrize(
+    ("reading", "start", "says"),
+    [
+        (Reading("battery", 0.0, OK, {"charge": 0.5, "charging": True}), None, ""),
+        (Reading("battery", 0.0, OK, {"charging": True}), None, "charge"),
+        (Reading("battery", NEVER), None, "nothing"),
+        (KeyError("volts"), None, "KeyError: 'volts'"),
+        (Reading("battery"), OSError("no such file"), "OSError: no such file"),
+    ],
+    ids=["works", "lacks a fact", "no data", "reading fails", "start fails"],
+)
+async def test_a_driver_of_another_package_that_fails_is_told(
+    reading: Reading | Exception,
+    start: Exception | None,
+    says: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell = DriverKind(("battery",), lambda *_: Cell("battery", reading, start))
+    monkeypatch.setattr(registry, "DRIVERS", {"cell": cell})
+    path = tmp_path / "mine.toml"
+    shipped = load_robot("turtlebot4").file.read_text(encoding="utf-8")
+    before, _, after = shipped.partition("[drivers]\n")
+    others = after[after.index("\n[[devices]]") :]
+    path.write_text(f'{before}[drivers]\nbattery = {{ kind = "cell" }}\n{others}')
+    found = (await tried(load_robot(str(path)), 0.05))["battery"]
+    assert found.ok is (says == "")
+    assert says in found.text
 
 
 async def test_each_device_gets_one_sentence(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.chest_pairing import keep_pairing
 from tangy_profiles import log_file
 from tangy_profiles.activity import load_activity
+from tangy_profiles.process_log import LEVEL
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
 from tangy_tui.doctor import Finding, examine, examine_robot
@@ -171,7 +172,11 @@ def test_the_devices_of_a_robot_are_tested_and_undriven_ones_missing(tmp_path: P
 
 
 @pytest.mark.slow
-def test_the_code_of_the_chest_screen_is_shown_and_constant(tmp_path: Path) -> None:
+def test_the_code_of_the_chest_screen_is_shown_and_constant(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(LEVEL, "INFO")
+    monkeypatch.delenv(LEVEL)
     file, folder = tmp_path / "mine.toml", tmp_path / "data"
     shipped = load_robot().file.read_text(encoding="utf-8")
     file.write_text(f'{shipped}\n[drivers]\nscreen = {{ kind = "page", port = 0 }}\n')
@@ -186,6 +191,7 @@ def test_the_code_of_the_chest_screen_is_shown_and_constant(tmp_path: Path) -> N
     assert codes == {f"{keep_pairing(folder).shown}."}
     assert first.state == "missing" and "http://127.0.0.1:" in first.text
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    assert capfd.readouterr().err == ""  # the page's process logs nothing among the findings
 
 
 def test_a_requested_broken_part_sets_the_exit_status(

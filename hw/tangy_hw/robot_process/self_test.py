@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from tangy_hw.device_protocols import Device, DeviceError, MachineClock
+from tangy_hw.device_protocols import PROTOCOLS, Device, DeviceError, MachineClock
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.registry import Wiring, known_drivers, open_device
 from tangy_hw.perception.camera_hub import Sources
@@ -17,7 +17,8 @@ from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.health import ERROR, OK, WARN
+from tangy_profiles.health import ERROR, NEVER, OK, WARN, Reading
+from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import load_room
 
@@ -76,14 +77,24 @@ async def try_robot(
     try:
         for one in (*shared, *opened.values()):
             started.append(one)
-            await one.start()
+            name = next((name for name, device in opened.items() if device is one), "")
+            try:
+                await one.start()
+            except Exception as error:
+                if not name:
+                    raise
+                found[name] = _fails(name, error)
+        tested = {name: one for name, one in opened.items() if name not in found}
         until = time.monotonic() + seconds
         while time.monotonic() < until:
-            if all(one.reading().state == OK for one in opened.values()):
+            if all(map(_works, tested.values())):
                 break
             await asyncio.sleep(TICK_SECONDS)
-        for name, one in opened.items():
-            found[name] = _tried(robot, name, one, wiring, seconds)
+        for name, one in tested.items():
+            try:
+                found[name] = _tried(robot, name, one, wiring, seconds)
+            except Exception as error:
+                found[name] = _fails(name, error)
     finally:
         for one in reversed(started):
             await one.close()
@@ -125,13 +136,29 @@ async def _try_requests(robot: Robot, seconds: float) -> SelfTestResult:
     return SelfTestResult(REQUESTS, works, text)
 
 
+def _works(device: Device | Camera) -> bool:
+    """Return whether a device works; one that fails need not be waited for."""
+    try:
+        return device.reading().state == OK and device.reading().age < NEVER
+    except Exception:  # its result names the error
+        return True
+
+
+def _fails(name: str, error: Exception) -> SelfTestResult:
+    """Return the result of a driver, perhaps of another package, that raises an error."""
+    return SelfTestResult(name, False, plain(f"its driver fails: {type(error).__name__}: {error}."))
+
+
 def _tried(
     robot: Robot, name: str, device: Device | Camera, wiring: Wiring, seconds: float
 ) -> SelfTestResult:
     where = _where(robot, name, device)
     reading = device.reading()
-    if reading.state == OK:
-        return SelfTestResult(name, True, f"{where} works.")
+    if reading.state == OK and reading.age < NEVER:
+        if not (lacks := _missing_facts(robot, name, device, reading)):
+            return SelfTestResult(name, True, f"{where} works.")
+        text = f"{where} reports no {' and no '.join(lacks)}, which {robot.file.name} lists."
+        return SelfTestResult(name, False, text)
     if isinstance(device, Camera):
         return SelfTestResult(name, False, device.sight.why or f"{where} gives no pictures.")
     why = str(getattr(device, "why", ""))
@@ -146,6 +173,16 @@ def _tried(
     if reading.state == WARN:
         return SelfTestResult(name, False, f"{where} warns that something is wrong with it.")
     return SelfTestResult(name, False, f"{where} has sent nothing within {seconds:g} s.")
+
+
+def _missing_facts(robot: Robot, name: str, device: Device | Camera, reading: Reading) -> list[str]:
+    """Return the facts of the robot's file that only this driver can report, and does not.
+
+    Faults that need them would never be found. Tangy itself adds facts of a base, for example.
+    """
+    if isinstance(device, Camera) or name in PROTOCOLS or name not in robot.devices:
+        return []
+    return [fact for fact in robot.devices[name].facts if fact not in reading.facts]
 
 
 def _where(robot: Robot, name: str, device: Device | Camera) -> str:
