@@ -1,4 +1,4 @@
-"""Effects, methods and device states are closed sets: a place that lacks one is named."""
+"""Effects, methods, faults and device states are closed sets: a place that lacks one is named."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import pytest
 from tangy_profiles.effects import EFFECTS
 from tangy_profiles.health import STATES, DeviceState
 from tangy_profiles.persuading import METHODS, PersuasionConfig
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.interaction.methods import method_of
 from tangy_tui.monitoring import evidence
 from tangy_tui.text import people
@@ -48,6 +49,18 @@ def matches() -> list[tuple[str, int, set[str]]]:
     return list(places("effect"))
 
 
+BENCH = ("sim/tangy_sim/device_simulator", "tangy_tui/app/simulated_devices_world.py")
+"""Where the bench simulates faults: each part asks for its own kinds by name."""
+
+
+@cache
+def bench_words() -> set[str]:
+    """Return the words in quotes that look like kinds of faults in the bench's modules."""
+    paths = [*(ROOT / BENCH[0]).rglob("*.py"), ROOT / BENCH[1]]
+    found = (re.findall(r'"([a-z-]+)"', path.read_text(encoding="utf-8")) for path in paths)
+    return {word for words in found for word in words}
+
+
 def missing(place: str, known: Collection[str], told: Collection[str]) -> str:
     return ", ".join(f"{place} says nothing of {one!r}" for one in known if one not in told)
 
@@ -67,6 +80,12 @@ def test_no_world_implements_an_unknown_effect() -> None:
 def test_every_method_of_persuasion_has_an_implementation_and_words(name: str) -> None:
     assert method_of(PersuasionConfig(name)).words
     assert name in people.METHODS, f"METHODS of {people.__name__} has no words for {name!r}"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_bench_simulates_every_kind_of_fault(kind: str) -> None:
+    words = bench_words()
+    assert kind in words, f"no part of {BENCH[0]} simulates {kind!r}, nor does {BENCH[1]}"
 
 
 def test_every_device_state_has_a_rank_and_words() -> None:

@@ -1,7 +1,7 @@
 """Faults on the bench: the kinds of `tangy_sim.worlds.injection`, injected into devices.
 
-This module only records each fault, its device and its start; each part of the bench queries its
-own kinds and simulates them. Kinds that cannot be injected here are recorded and reported, too.
+This module only records each fault, its device and its start; each part of the bench asks for its
+own kinds by name and simulates them. A test names the kinds that no part simulates.
 """
 
 from __future__ import annotations
