@@ -44,6 +44,22 @@ def let_join(workspace: Workspace, name: str, *, guest: bool = False) -> str:
     return id
 
 
+def known_refusal(workspace: Workspace, joins: Joins) -> StaffNote | None:
+    """Return why a person cannot join in any seat, None if they can: they may take part already."""
+    people, name = workspace.people, joins.name.strip()
+    if not name:
+        return StaffNote("no name")
+    if workspace.activity.teams:
+        return StaffNote("teams play")
+    for person in people:
+        if folded(name) in (folded(person.name), folded(person.id)):
+            return StaffNote("known already", person.id)
+    first = [unaccented(name)]
+    if named := tuple(p.id for p in people if unaccented(p.name).split()[:1] == first):
+        return StaffNote("which person", words=name, people=named)
+    return None
+
+
 class Admission:
     """Lets new people join a running live game."""
 
@@ -60,18 +76,9 @@ class Admission:
         """
         from tangy_tui.language.name_conflicts import check_new_name
 
-        workspace, name = self._workspace, joins.name.strip()
-        people, room = workspace.people, workspace.room
-        if not name:
-            return StaffNote("no name")
-        if workspace.activity.teams:
-            return StaffNote("teams play")
-        for person in people:
-            if folded(name) in (folded(person.name), folded(person.id)):
-                return StaffNote("known already", person.id)
-        first = [unaccented(name)]
-        if named := tuple(p.id for p in people if unaccented(p.name).split()[:1] == first):
-            return StaffNote("which person", words=name, people=named)
+        workspace, people, room = self._workspace, self._workspace.people, self._workspace.room
+        if (refused := known_refusal(workspace, joins)) is not None:
+            return refused
         if len(people) >= MOST_PEOPLE:
             return StaffNote("most people", str(MOST_PEOPLE))
         if len(people) >= room.places:
@@ -81,7 +88,7 @@ class Admission:
             seats = f"{room.seat_word or SEAT} {places.start + 1}"
             seats += f" to {places.stop}" if len(places) > 1 else ""
             return StaffNote("no seat there", str(table + 1) if room.tables else "", seats)
-        check_new_name(workspace.activity, people, Person(NEW, name))
+        check_new_name(workspace.activity, people, Person(NEW, joins.name.strip()))
         return None
 
     def admit(self, joins: Joins) -> StaffNote:
@@ -97,6 +104,10 @@ class Admission:
         workspace.gather((*there[:place], id, *there[place:]))
         seat = f"{workspace.room.seat_word or SEAT} {place + 1}"
         return StaffNote("joins", id, seat)
+
+    def seat_of(self, person: str) -> int:
+        """Return the seat of a participant, from 1."""
+        return list(self._workspace.names).index(person) + 1
 
     @property
     def seats(self) -> dict[int, tuple[str, ...]]:

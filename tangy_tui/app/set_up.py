@@ -1,7 +1,6 @@
-"""What staff choose and check before a live game: who is here, seats, activity, plan, devices.
+"""What staff choose before a live game: who is here, seats, activity and plan.
 
-The screen and the console drive the same object. The robot may be off until `begin`; until then
-most checks are unknown. The robot reads a card and speaks only if staff ask, and never drives.
+The screen and the console drive the same object.
 """
 
 from __future__ import annotations
@@ -13,52 +12,32 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
-from tangy_profiles.game_world import BENCH
-from tangy_profiles.health import OK
-from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import nearest, plain
+from tangy_profiles.room import SEAT
 from tangy_tui.app.chosen_activity import choosable
-from tangy_tui.app.joining import let_join
+from tangy_tui.app.game_commands import Joins, StaffNote
+from tangy_tui.app.joining import known_refusal, let_join
 from tangy_tui.app.on_duty import on_duty, take_duty
+from tangy_tui.app.readiness import Readiness
 from tangy_tui.app.rooms import KnownRoom, choose_room, find_room, known_rooms
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_tui.app.workspace import Workspace
-    from tangy_tui.world import World
 
 T = TypeVar("T")
-
-CheckName = Literal["robot", "battery", "tablet", "cards", "faces", "sound"]
-CHECKS: tuple[CheckName, ...] = ("robot", "battery", "tablet", "cards", "faces", "sound")
-CheckState = Literal["off", "ready", "not ready", "not checked", "not told"]
-"""Of a check: the robot is off, passed, failed, not checked yet, or no device reports it."""
 
 Choice = Literal["seats", "patterns", "strength"]
 """A choice that another activity may not have."""
 
 MINUTES = (0, 15, 20, 30, 40, 60, 90)
 """The planned lengths of a session in minutes; 0: no limit."""
-APART = ("localisation", "screen")
-"""Devices left out of the robot check: it localises later, and the tablet has its own check."""
-LEAST_BATTERY = 0.2
-"""The fraction of its charge below which a robot should be charged first."""
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """A readiness check; `about` names the problem, or the result."""
-
-    name: CheckName
-    state: CheckState
-    about: str = ""
 
 
 @dataclass
-class SetUp:
+class SetUp(Readiness):
     """The choices for the games of a session. Its methods change them; `plan` is the result."""
 
-    workspace: Workspace
     seats: list[str] = field(default_factory=list)
     """The ids of the participants, in the order of their seats."""
     away: set[str] = field(default_factory=set)
@@ -69,14 +48,6 @@ class SetUp:
     pace: float = USUAL_PACE
     minutes: int = 0
     on_duty: str = ""
-    world: LiveWorld | None = None
-    """The robot, once it is on."""
-    card: str = ""
-    """The number of the last card that the robot read."""
-    face: str = ""
-    """The id of the last person that the robot recognised."""
-    said: bool = False
-    heard: bool = False
     dropped: list[Choice] = field(default_factory=list)
     """The choices that the last change of activity could not keep."""
     _order: list[str] = field(default_factory=list)  # of seats, also of people who do not play now
@@ -116,16 +87,6 @@ class SetUp:
             self.workspace.seat(self.seats)
 
     @property
-    def calls(self) -> bool:
-        """Whether numbers are called, at a pace."""
-        return bool(self.workspace.activity.deck.columns)
-
-    @property
-    def on_bench(self) -> bool:
-        """Whether the robot and the people are simulated."""
-        return self.world is not None and self.world.played_in == BENCH
-
-    @property
     def teams_play(self) -> bool:
         """Whether teams take part instead of individuals."""
         return bool(self.workspace.activity.teams)
@@ -140,6 +101,30 @@ class SetUp:
         """
         if self.world is None and not self.teams_play:
             self.seats.append(let_join(self.workspace, name, guest=guest))
+
+    def join(self, joins: Joins) -> StaffNote | None:
+        """Add a person, perhaps on a seat or at a table; return why they cannot join.
+
+        Raises:
+            TangyError: there is no such seat, or the name cannot be given.
+        """
+        workspace, count = self.workspace, len(self.seats) + 1
+        if (refused := known_refusal(workspace, joins)) is not None:
+            return refused
+        tables = max(1, len(workspace.room.tables))
+        if joins.seat > count or joins.table > tables:
+            last = (SEAT, count) if joins.seat else ("table", tables)
+            wanted = joins.seat or joins.table
+            raise TangyError(f"There is no {last[0]} {wanted}: the last one is {last[1]}.")
+        self.add(joins.name.strip(), guest=joins.guest)
+        place = joins.seat - 1
+        if joins.table:
+            place = workspace.room.at_tables(count)[joins.table - 1][-1]
+        if place >= 0 and len(self.seats) == count:
+            self.seats.insert(place, self.seats.pop())
+            self._moved = True
+            workspace.seat(self.seats)
+        return None
 
     def take_duty(self, name: str) -> None:
         """Set who is on duty, and keep it for the next session.
@@ -270,88 +255,6 @@ class SetUp:
         """
         world.choose(self.plan)
 
-    # ------------------------------------------------------------------------------ the checks
-
-    def checks(self) -> list[Check]:
-        """Return the checks in the order of `CHECKS`; that of cards only if there are any."""
-        names = [name for name in CHECKS if name != "cards" or self.calls]
-        if self.world is None:
-            return [Check(name, "off") for name in names]
-        return [self._check(name) for name in names]
-
-    @property
-    def not_ready(self) -> list[Check]:
-        """The failed checks."""
-        return [check for check in self.checks() if check.state == "not ready"]
-
-    def _check(self, name: CheckName) -> Check:
-        match name:
-            case "robot":
-                return self._robot()
-            case "battery":
-                return self._battery()
-            case "tablet":
-                return self._tablet()
-            case "cards":
-                return self._cards()
-            case "faces":
-                return self._faces()
-            case "sound":
-                return self._sound()
-
-    def _robot(self) -> Check:
-        assert self.world is not None  # noqa: S101 - `checks` asks only with a world
-        if self.world.link.silent:
-            return Check("robot", "not ready", self.world.link.silent)
-        ill = [r.device for r in self.world.health() if r.state != OK and r.device not in APART]
-        return Check("robot", "not ready" if ill else "ready", ", ".join(ill))
-
-    def _battery(self) -> Check:
-        share = battery_of(self.world)
-        if share is None:
-            return Check("battery", "not told")
-        return Check("battery", "ready" if share >= LEAST_BATTERY else "not ready", f"{share:.0%}")
-
-    def _tablet(self) -> Check:
-        assert self.world is not None  # noqa: S101 - as above
-        link = self.world.link
-        if not link.tablet_page:
-            return Check("tablet", "not told")
-        page = f"{link.screen} code {link.code}"
-        shown = any(r.device == "screen" and r.state == OK for r in self.world.health())
-        return Check("tablet", "ready" if shown else "not ready", page)
-
-    def _cards(self) -> Check:
-        if not reads_cards(self.workspace.robot):
-            return Check("cards", "not told")
-        return Check("cards", "ready" if self.card else "not checked", self.card)
-
-    def _faces(self) -> Check:
-        if self.world is None or not self.world.knows_faces:
-            return Check("faces", "not told")
-        seen = self.workspace.name(self.face) if self.face else ""
-        return Check("faces", "ready" if seen else "not checked", seen)
-
-    def _sound(self) -> Check:
-        if "voice" not in self.workspace.robot.devices:
-            return Check("sound", "not told")
-        state: CheckState = "ready" if self.heard else "not ready" if self.said else "not checked"
-        return Check("sound", state)
-
-    def look_at_card(self) -> str:
-        """Read a card held before the robot; return its number, "" if none was read."""
-        assert self.world is not None  # noqa: S101 - offered only with a robot
-        try:
-            seen = self.world.commands.do("card", called=[], after=0.0, identify=True)
-        except DeviceError:
-            return ""
-        self.card = "" if seen["card"] is None else str(seen["card"])
-        return self.card
-
-    def holder(self, card: int) -> str:
-        """Return the id of the known owner of a card, "" if there is none."""
-        return "" if self.world is None else self.world.cards.dealt.owner(card)
-
     def comes_with(self, card: int, person: str) -> None:
         """Mark a person as present, with a card."""
         self.away.discard(person)
@@ -360,7 +263,7 @@ class SetUp:
 
     def look_at_face(self) -> str:
         """Recognise the person before the robot as present; return the id, "" for nobody."""
-        assert self.world is not None  # noqa: S101 - as above
+        assert self.world is not None  # noqa: S101 - offered only with a robot
         try:
             seen = self.world.commands.do("face").get("person")
         except DeviceError:
@@ -368,29 +271,6 @@ class SetUp:
         self.face = str(seen) if seen in self.seats else ""
         self.away.discard(self.face)
         return self.face
-
-    def speak(self, words: str) -> bool:
-        """Say something for staff to hear; return whether that worked."""
-        assert self.world is not None  # noqa: S101 - as above
-        from tangy_hw.device_protocols import Picture
-
-        try:
-            self.world.say(words, Picture(words))
-        except DeviceError:
-            return False
-        self.said = True
-        return True
-
-
-def battery_of(world: World | None) -> float | None:
-    """Return the fraction of a robot's charge, 0 to 1; None if no device reports it."""
-    if world is None:
-        return None
-    for reading in world.health():
-        for name in ("battery", "charge"):
-            if isinstance(value := reading.facts.get(name), int | float):
-                return float(value) / (100.0 if value > 1 else 1.0)
-    return None
 
 
 def _turned(values: tuple[T, ...], now: T, by: int) -> T:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from difflib import get_close_matches
+from time import sleep
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.command_grammar import command_reader, read_inquiry
@@ -15,11 +16,13 @@ from tangy_tui.app.game_commands import (
     EndGame,
     GameCommand,
     GoesAway,
+    Joins,
     LetWin,
     SetPace,
 )
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.text import set_up as text
+from tangy_tui.text.control import noted_words
 
 _NO = ("end", "n", "no", "quit", "leave")
 """Lines that do not begin a game that is not ready."""
@@ -27,7 +30,6 @@ _NO = ("end", "n", "no", "quit", "leave")
 _SEAT = re.compile(r"seat (.+?) (\d{1,2})", re.I)
 _MINUTES = re.compile(r"time (\d{1,3})(?: minutes?)?", re.I)
 _WORDS = re.compile(r"words (.+)", re.I)
-_JOINS = re.compile(r"(guest|add) (.+)", re.I)
 _NAME = re.compile(r"rename (.+?) to (.+)", re.I)
 _DUTY = re.compile(r"(?:on )?duty (.+)|(.+) is on duty", re.I)
 _ACTIVITY = re.compile(r"activity (.+)", re.I)
@@ -102,7 +104,9 @@ class SetUpLines:
         self._write(text.not_known_words(words, near[0] if near else ""))
 
     def begins_anyway(self) -> bool:
-        """Write the results of the checks; if one failed, ask whether to begin."""
+        """Write the results of the checks; if one has failed, ask whether to begin."""
+        for seconds in self.setup.settling():
+            sleep(seconds)
         for check in self.setup.checks():
             self._write(f"  {text.NAMES[check.name]}: {text.line_of(check)}")
         not_ready = self.setup.not_ready
@@ -141,8 +145,6 @@ class SetUpLines:
             setup.minutes = min(int(minutes[1]), 10 * MINUTES[-1])
         elif strength := _WORDS.fullmatch(words):
             setup.choose_strength(strength[1])
-        elif joins := _JOINS.fullmatch(words):
-            self._add(joins[2], guest=joins[1].casefold() == "guest")
         elif name := _NAME.fullmatch(words):
             setup.rename(self._find(name[1]), name[2])
         elif duty := _DUTY.fullmatch(words):
@@ -155,10 +157,11 @@ class SetUpLines:
             return False
         return True
 
-    def _add(self, name: str, *, guest: bool) -> None:
+    def _join(self, joins: Joins) -> None:
         if self.setup.teams_play:
             raise TangyError(text.TEAMS_PLAY)
-        self.setup.add(name, guest=guest)
+        if (refused := self.setup.join(joins)) is not None:
+            raise TangyError(noted_words(refused, self.setup.workspace.name))
 
     def _rooms(self) -> dict[str, str]:
         """Return the source of each room, by its title in lower case."""
@@ -190,6 +193,8 @@ class SetUpLines:
             case LetWin(several, visits):
                 setup.several = setup.several if several is None else several
                 setup.visits = setup.visits if visits is None else visits
+            case Joins():
+                self._join(command)
             case EndGame():
                 return None
             case _:

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import assert_never
 
 from tangy_profiles.reading import plain
-from tangy_tui.app.set_up import Check, CheckName, Choice, SetUp
+from tangy_tui.app.readiness import Check, CheckName
+from tangy_tui.app.set_up import Choice, SetUp
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.rooms import room_words

@@ -11,8 +11,9 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.room import load_room, room_for
 from tangy_tui.app.joining import let_join
+from tangy_tui.app.readiness import Check
 from tangy_tui.app.register import add_person, archive_person, guest_ids, participants, registered
-from tangy_tui.app.set_up import Check, SetUp
+from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text

@@ -6,7 +6,6 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import replace
 from functools import partial
-from time import monotonic
 from typing import ClassVar
 
 from textual.app import App, ComposeResult
@@ -16,9 +15,10 @@ from textual.content import Content
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.readiness import CHECKS, LOOK_SECONDS
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.rooms import KnownRoom
-from tangy_tui.app.set_up import CHECKS, SetUp
+from tangy_tui.app.set_up import SetUp
 from tangy_tui.text import set_up as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOTHING_MOVES
 from tangy_tui.text.register import staff_names
@@ -37,12 +37,6 @@ from tangy_tui.ui.screens.set_up_lines import check_lines, game_lines, people_li
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-
-LOOK_SECONDS = 0.5
-"""The interval between two checks."""
-
-SETTLES_SECONDS = 4.0
-"""Time for newly started devices to become ready, in s."""
 
 ChooseActivity = Callable[[], Awaitable[None]]
 SwitchOn = Callable[[], Awaitable[LiveWorld | None]]
@@ -360,9 +354,10 @@ class SetUpScreen(TangyScreen[bool]):
         self._stopped = False
         if self.setup.world is None:
             await self._check(CHECKS[0])
-            until = monotonic() + SETTLES_SECONDS
-            while self._waits(until):  # noqa: ASYNC110 - the checks are polled
-                await asyncio.sleep(LOOK_SECONDS)
+            for seconds in self.setup.settling():
+                await asyncio.sleep(seconds)
+                if self._stopped:
+                    break
         if self.setup.world is None or self._stopped:
             return
         not_ready = [text.not_ready_words(check) for check in self.setup.not_ready]
@@ -370,10 +365,6 @@ class SetUpScreen(TangyScreen[bool]):
         dialog = ConfirmDialog(text.BEGIN_ANYWAY, detail, yes="begin", no="wait")
         if not not_ready or await self.app.push_screen_wait(dialog):
             self.close(True)
-
-    def _waits(self, until: float) -> bool:
-        """Return whether to wait for devices, at most until a time in s."""
-        return not self._stopped and bool(self.setup.not_ready) and monotonic() < until
 
     def action_leave(self) -> None:
         """Close the screen, after a question if choices would be lost; Tangy goes off again."""
