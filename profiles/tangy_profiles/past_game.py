@@ -119,6 +119,8 @@ class PastGame:
     """For whom staff asked for help so late that no step shows it, in order."""
     cards: KnownCards = field(default_factory=KnownCards)
     """Whose card was known in this game."""
+    came: tuple[tuple[str, int], ...] = ()
+    """The new people who came, in order, each with the place (from 0) that staff gave them."""
 
     @property
     def world(self) -> GameWorld:
@@ -331,6 +333,9 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         acted=acted,
         asked_for=_asked_for(acts, last),
         cards=KnownCards.of(notes),
+        came=tuple(
+            (note.person, note.seat - 1) for note in notes if note.did == "came" and note.seat
+        ),
     )
 
 

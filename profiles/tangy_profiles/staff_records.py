@@ -68,7 +68,8 @@ class StaffAction(EventRecord):
     `person` is whom it concerns. `detail` depends on `did`: the pace in s, a card's number, the
     label of a call, the names of patterns or rules, the kinds of faults, the level of autonomy, the
     words that a person said, the seconds of a freeze, or a note in words. `seconds` is the time in
-    the game, `taken_back` the number of a call that no longer counts.
+    the game, `taken_back` the number of a call that no longer counts, and `seat` (from 1) the seat
+    of a new person who came.
     """
 
     game: str
@@ -78,3 +79,4 @@ class StaffAction(EventRecord):
     detail: Sparse[str] = ""
     seconds: float | None = None
     taken_back: Sparse[Count] = 0
+    seat: Sparse[Count] = 0

@@ -48,7 +48,8 @@ def take_up(
 ) -> TakenUp:
     """Restore the seats and the room of an interrupted game that is resumed.
 
-    People who came meanwhile join it if possible: at their `places` (from 0), or on the next seats.
+    People who came meanwhile join it if possible: at their `places` (from 0), on the seats that
+    staff gave them before the interruption, or on the next ones.
     People who no longer take part count as participants of this game.
 
     Raises:
@@ -59,7 +60,9 @@ def take_up(
         named = past.beginning.room
         room = find_room(workspace.store.folder, named) if named else None
     there = past.beginning.people
-    new = tuple(person for person in workspace.names if person not in there)
+    given = dict(past.came)
+    new = tuple(one for one in (*given, *workspace.names) if one not in there)
+    new = tuple(one for one in dict.fromkeys(new) if one in workspace.names)
     joins = new if can_join(workspace, past) else ()
     if room is not None:
         check_places(room, len(there) + len(joins))
@@ -68,7 +71,7 @@ def take_up(
     going_on = replace(past, newcomers=joins)
     for person in joins:
         next_place = workspace.room.next_place(len(going_on.beginning.people))
-        place = next_place if places is None else places[person]
+        place = given.get(person, next_place) if places is None else places[person]
         going_on = going_on.joined_by(person, workspace.activity.unread, place)
     workspace.gather(going_on.beginning.people)
     return TakenUp(going_on, () if joins else new)

@@ -53,7 +53,7 @@ class JoiningGames(EndingGames):
         if not self.joined and not self._goes_to_front(command.name):
             return [StaffNote("not at front")]
         joins = self.admission.admit(command)
-        self.note("came", person=joins.about)
+        self.note("came", person=joins.about, seat=self.admission.seat_of(joins.about))
         if self.joined:  # the robot is set up once, for all who have come
             return [joins]
         self.supervision.interrupt()

@@ -232,6 +232,30 @@ def test_staff_say_where_a_person_who_joins_sits(taught: Path) -> None:
     workspace.close()
 
 
+def test_people_keep_their_seats_if_the_program_is_killed_before_the_game_goes_on(
+    taught: Path,
+) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.play(3)
+    first = before.told(Joins("Berta", seat=2)).about
+    second = before.told(Joins("Otto", seat=2)).about
+    workspace.close()  # and kill -9, while the robot is switched on again
+    for kills in range(3):  # then it comes on
+        workspace = Workspace(taught)
+        past = find_interrupted(workspace, LIVE)
+        assert past is not None
+        taken_up = take_up(workspace, past).past
+        assert taken_up.beginning.people == ("user1", second, first, "user2", "user3", "user4")
+        assert taken_up.newcomers == (first, second)
+        if kills == 2:
+            after = LiveGame(workspace, taken_up)
+            after.play(1)
+            assert after.world.people == taken_up.beginning.people
+            assert not log_problems(workspace.store)
+        workspace.close()
+
+
 def test_nobody_changes_tables_for_a_person_who_joins(taught: Path) -> None:
     workspace = Workspace(taught, users=10)  # four at the first table, three at the others
     game = LiveGame(workspace)
