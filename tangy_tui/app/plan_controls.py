@@ -18,6 +18,7 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GoesAway,
     LetWin,
+    NoteKind,
     PlanCommand,
     SetPace,
     StaffNote,
@@ -147,11 +148,11 @@ class GamePlanControls:
         words = rules.claim_right if wins else rules.claim_wrong
         holder = person or world.holder(card)
         self._note("claim right" if wins else "claim wrong", person=holder or "", detail=str(card))
-        world.announce(words.format(card=card, pattern=pattern.label if pattern else ""))
+        said = words.format(card=card, pattern=pattern.label if pattern else "")
+        world.announce(said)
         people = (holder,) if holder else ()
-        told: list[Result] = [
-            StaffNote("claim right" if wins else "claim wrong", str(card), people=people)
-        ]
+        kind: NoteKind = "claim right" if wins else "claim wrong"
+        told: list[Result] = [StaffNote(kind, str(card), said, people)]
         if wins and holder:
             told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
         elif wins:

@@ -1,4 +1,7 @@
-"""What Tangy does in the console of a game, told while it does it, and not only after the step."""
+"""What Tangy does in the console of a game, told while it does it, and not only after the step.
+
+Also that the planned time is over: the game goes on.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.text.games import says_line
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_view import said_words
+from tangy_tui.text.staff_view import said_words, time_is_up_words
 from tangy_tui.text.telling import waiting_words
 
 
@@ -22,6 +25,7 @@ class ProgressLines:
         self._controller, self._name = controller, name
         self._going = ("", "", ("", tuple[str, ...]()))
         self._said = self._early = ""
+        self._late = False  # whether it was told that the planned time is over
 
     @property
     def asks(self) -> bool:
@@ -40,7 +44,15 @@ class ProgressLines:
         if (going := (robot.going, robot.lets, robot.asks_about)) != self._going:
             self._going = going
             told.append(waiting_words(*going, world.activity.object, self._name))
+        told.append(self._time_is_up())
         return [line for line in told if line]
+
+    def _time_is_up(self) -> str:
+        """Return once that the planned time of the game is over; "" if there is nothing to tell."""
+        game = self._controller.supervision
+        minutes = game.game.changes.plan.minutes
+        before, self._late = self._late, 0 < minutes * 60 <= game.game.log.seconds
+        return time_is_up_words(minutes) if self._late > before and not game.over else ""
 
     def resumed(self) -> list[str]:
         """Return the line about what the chest screen of a resumed game still shows."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_profiles.game_records import AnswerNotClear, GameStep
+from tangy_profiles.game_records import AnswerNotClear, GameBeginning, GameStep
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.state import Response
@@ -17,11 +17,20 @@ class GameLog:
     def __init__(self, world: World, store: Store) -> None:
         self._world, self._store = world, store
         self._began = 0.0
+        self._numbers = dict[str, int]()
+        self._read = 0  # the last event of which the number is known
 
     @property
     def seconds(self) -> float:
         """The time played in s, without the time in which the game was interrupted."""
         return max(0.0, self._world.seconds - self._began)
+
+    def number(self, game: str) -> int:
+        """Return the number of a logged game, counted from 1 over all games of the log."""
+        for event in self._store.events(GameBeginning, after=self._read):
+            self._read = event.seq
+            self._numbers.setdefault(event.record.game, len(self._numbers) + 1)
+        return self._numbers[game]
 
     def begin(self) -> None:
         """Start the clock of a game."""

@@ -119,9 +119,11 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             spoken = ", or as soon as it has spoken" if float(about) < SPOKEN_SECONDS else ""
             return f"Tangy calls every {about} seconds{spoken}."
         case "claim right":
-            return f"{_whose_card(noted, name)} wins. Tangy tells everybody."
+            return f"{_whose_card(noted, name)} wins. Tangy tells everybody: {noted.words}"
         case "claim wrong":
-            return f"{_whose_card(noted, name)} does not win yet. Tangy tells everybody."
+            return (
+                f"{_whose_card(noted, name)} does not win yet. Tangy tells everybody: {noted.words}"
+            )
         case "card given":
             before = "".join(f" It counted as {name(one)}'s until now." for one in noted.people)
             return f"{name(about)} has card {noted.words}.{before}"

@@ -67,10 +67,10 @@ def game_lines(
     """
     activity = supervision.world.activity
     match event:
-        case GameBegun(_, number, _):
-            return [f"Game {number} begins."]
-        case ResumedGame(_, number, steps, _):
-            return [resumed_words(number, steps, goes_on=goes_on)]
+        case GameBegun(game):
+            return [begun_words(supervision.game.log.number(game))]
+        case ResumedGame(game, steps=steps):
+            return [resumed_words(supervision.game.log.number(game), steps, goes_on=goes_on)]
         case Acted(number, state, decision, choice, action, outcome, _, speech):
             target = addressed_words(supervision.policy, action, state, name)
             how = f", {choice.strategy}" if choice else ""

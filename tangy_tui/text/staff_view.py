@@ -65,6 +65,11 @@ def time_words(
     return ", ".join(told)
 
 
+def time_is_up_words(minutes: int) -> str:
+    """Tell that the planned time of a game is over."""
+    return f"Time is up: you planned {minutes} minutes. The game goes on; end stops it."
+
+
 def time_facts(seconds: float, minutes: int, paused: float | None, now: datetime | None) -> Fact:
     """Tell the same with the time of day, and in two shorter ways for less room."""
     told = (

@@ -104,7 +104,8 @@ class GamePicture:
         log = self._screen.query_one(LogView)
         for event in events:
             match event:
-                case GameBegun(_, number, state) | ResumedGame(_, number, _, state):
+                case GameBegun(game, _, state) | ResumedGame(game, _, _, state):
+                    number = self._supervision.game.log.number(game)
                     resumed = event.steps if isinstance(event, ResumedGame) else 0
                     again = resumed_words(number, resumed, goes_on=self.goes_on)
                     log.write(again if resumed else begun_words(number))

@@ -41,6 +41,7 @@ from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.changes import changed_words
+from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import moment_lines, replay_lines, session_lines
 from tangy_tui.text.report import changes_lines, staff_rows
 
@@ -164,6 +165,18 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
     ]  # fmt: skip
     (told,) = moment_lines(replay.moments[-1], True, None, name)
     assert told.casefold().endswith(f"{planned.control.by} told tangy that rosa asks for help.")
+
+
+def test_staff_read_what_the_group_hears_about_a_claim(
+    planned: Planned, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard = list[str]()
+    planned.begin(GamePlan())
+    planned.play(calls=4)
+    monkeypatch.setattr(planned.world, "announce", heard.append)
+    (note,) = planned.control.apply(ClaimCard(2))
+    assert isinstance(note, StaffNote) and heard == [note.words]
+    assert note.words in noted_words(note, str)
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

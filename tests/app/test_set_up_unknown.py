@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_tui.app.set_up import CHECKS, Check, SetUp
+from tangy_tui.app.readiness import CHECKS, Check
+from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text
