@@ -11,7 +11,7 @@ from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import DemonstrationStep
 from tangy_tui.learning.coverage import coverage
 from tangy_tui.learning.library_entries import Library, LibraryEntry
-from tangy_tui.learning.quality import quality_notes
+from tangy_tui.learning.quality import QualityNote, quality_notes
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class ListRow:
     steps: int
     seen: int
     situations: int
-    notes: tuple[str, ...]
+    notes: tuple[QualityNote, ...]
     state: str
 
     @property
@@ -38,7 +38,7 @@ class ListRow:
         return self.state == IN_USE
 
     def to_json(self) -> dict[str, Any]:
-        """Return the row as JSON."""
+        """Return the row as JSON, without the words of its notes."""
         return {
             "number": self.number,
             "id": self.id,
@@ -47,7 +47,6 @@ class ListRow:
             "steps": self.steps,
             "coverage": {"seen": self.seen, "situations": self.situations},
             "state": self.state,
-            "notes": list(self.notes),
         }
 
 

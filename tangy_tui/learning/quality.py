@@ -1,12 +1,14 @@
 """Quality notes: what a teacher should know about a demonstration before learning from it.
 
-Each note states a fact of the log in a few plain words; there is no score.
+Each note states a fact of the log; there is no score. `text/quality.py` has its words.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from statistics import median
+from typing import Literal
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
@@ -21,13 +23,43 @@ ENOUGH_TO_COMPARE = 3
 """Complete games needed before a usual length is defined."""
 
 
+NoteKind = Literal[
+    "asked",
+    "again",
+    "merged",
+    "split",
+    "not finished",
+    "ended early",
+    "taken back",
+    "failed",
+    "contradicts itself",
+    "disagrees",
+    "called wrong",
+    "long",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class QualityNote:
+    """One fact about a demonstration.
+
+    `count` is a number of steps or situations, or the step it was shown again from;
+    `demonstrations` are the numbers of the others, and `due` the behaviour that was still to come.
+    """
+
+    kind: NoteKind
+    count: int = 0
+    demonstrations: tuple[int, ...] = ()
+    due: str = ""
+
+
 def quality_notes(
     activity: Activity,
     entry: LibraryEntry,
     library: Library,
     conflicts: Sequence[Conflict] | None = None,
-) -> list[str]:
-    """List notes about a demonstration, a few words each.
+) -> list[QualityNote]:
+    """List notes about a demonstration.
 
     Args:
         activity: the activity demonstrated.
@@ -46,19 +78,19 @@ def quality_notes(
     ]
 
 
-def _origin(shown: Demonstration, library: Library) -> Iterator[str]:
+def _origin(shown: Demonstration, library: Library) -> Iterator[QualityNote]:
     """Describe its origin, unless it was shown as one whole game."""
     sources = [library.number(id) for id in shown.of if id in library.entries]
     match shown.origin:
         case "asked":
-            yield "answered in a game"
+            yield QualityNote("asked")
         case "again" if sources:
             first = _kept(shown, library) + 1
-            yield f"shown again from step {first} of demonstration {sources[0]}"
+            yield QualityNote("again", first, (sources[0],))
         case "merged" if sources:
-            yield f"merged from demonstrations {_listed(sources)}"
+            yield QualityNote("merged", demonstrations=tuple(sources))
         case "split" if sources:
-            yield f"a part of demonstration {sources[0]}"
+            yield QualityNote("split", demonstrations=(sources[0],))
 
 
 def _kept(shown: Demonstration, library: Library) -> int:
@@ -71,21 +103,23 @@ def _kept(shown: Demonstration, library: Library) -> int:
     )
 
 
-def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
+def _course(activity: Activity, entry: LibraryEntry) -> Iterator[QualityNote]:
     """Describe how the game went: its end, undone steps, and failed steps."""
     shown = entry.demonstration
     if not shown.finished:
-        yield "not finished"
+        yield QualityNote("not finished")
     elif shown.replayable and (ending := missed_end(activity, shown)):
-        yield f"ended before “{activity.behaviour(ending).question}”"
+        yield QualityNote("ended early", due=activity.behaviour(ending).question)
     if entry.taken_back:
-        yield f"{_counted(entry.taken_back, 'step')} taken back"
+        yield QualityNote("taken back", entry.taken_back)
     failed = sum(not step.completed for step in shown.steps)
     if failed:
-        yield f"{_counted(failed, 'step')} that could not be carried out"
+        yield QualityNote("failed", failed)
 
 
-def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict]) -> Iterator[str]:
+def _answers(
+    entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict]
+) -> Iterator[QualityNote]:
     """Describe its contradictions: with itself, with others, and with a teacher's resolutions."""
     shown = entry.demonstration
     if not entry.hidden:
@@ -93,17 +127,14 @@ def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict
             conflicts = find_conflicts([*library.finished, shown], library.resolutions)
         alone = find_conflicts([shown], library.resolutions)
         if alone:
-            yield f"contradicts itself in {_counted(len(alone), 'situation')}"
+            yield QualityNote("contradicts itself", len(alone))
         others = [found for c in conflicts if (found := _opponents(shown.id, c))]
         if others:
             numbers = sorted({library.number(id) for found in others for id in found})
-            noun = "demonstration" if len(numbers) == 1 else "demonstrations"
-            yield (
-                f"disagrees with {noun} {_listed(numbers)} in {_counted(len(others), 'situation')}"
-            )
+            yield QualityNote("disagrees", len(others), tuple(numbers))
     wrong = sum(any(r.sets_aside(step) for r in library.resolutions) for step in shown.steps)
     if wrong:
-        yield f"{_counted(wrong, 'step')} called wrong by a teacher"
+        yield QualityNote("called wrong", wrong)
 
 
 def _opponents(id: str, conflict: Conflict) -> set[str]:
@@ -115,19 +146,10 @@ def _opponents(id: str, conflict: Conflict) -> set[str]:
     return {s.demonstration for steps in theirs for s in steps} - {id}
 
 
-def _length(shown: Demonstration, library: Library) -> Iterator[str]:
+def _length(shown: Demonstration, library: Library) -> Iterator[QualityNote]:
     """Describe that it took many more steps than usual."""
     usual = [len(d.steps) for d in library.finished if d.id != shown.id and d.replayable]
     if shown.replayable and len(usual) >= ENOUGH_TO_COMPARE:
         middle = median(usual)
         if len(shown.steps) > MUCH_LONGER * middle:
-            yield f"much longer than usual ({middle:.0f} steps)"
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
-def _listed(numbers: Iterable[int]) -> str:
-    *most, last = map(str, numbers)
-    return f"{', '.join(most)} and {last}" if most else last
+            yield QualityNote("long", round(middle))

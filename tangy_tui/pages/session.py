@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 
 from tangy_tui.monitoring.attention import attention
-from tangy_tui.monitoring.fault import OVER, Fault, Moved
+from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import Session
@@ -27,10 +27,10 @@ from tangy_tui.text.activities import stage_words
 from tangy_tui.text.endings import all_endings, ending_sentence
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.report import WORLD_WORDS, care_lines, paused_words
+from tangy_tui.text.report import WORLD_WORDS, care_lines
 from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import note_words, status_words
-from tangy_tui.text.times import clock, day_and_time, length, time_of_day
+from tangy_tui.text.times import clock, day_and_time, time_of_day
 
 MOST_DRAWN = 24
 """The most games drawn on one page: the last ones."""
@@ -88,15 +88,15 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 
 KEY = (
     ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', say.VISIT),
-    ('<rect class="asks" x="1" y="6" width="18" height="4"/>', "asks for help"),
+    ('<rect class="asks" x="1" y="6" width="18" height="4"/>', say.ASKS),
     ('<circle class="yes" cx="10" cy="8" r="5"/>', RESULT_WORDS["complied"]),
     ('<circle class="late" cx="10" cy="8" r="4.4"/>', RESULT_WORDS["late"]),
     ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', RESULT_WORDS["refused"]),
     ('<circle class="open" cx="10" cy="8" r="4.4"/>', RESULT_WORDS["awaited"]),
     ('<line class="tick" x1="6" x2="6" y1="4" y2="12"/>'
-     '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', "number called, anything else"),
-    ('<g class="fault minor"><circle cx="10" cy="8" r="7"/></g>', "fault"),
-    ('<g class="fault critical"><path d="M10 0L18 8L10 16L2 8Z"/></g>', "critical fault"),
+     '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', say.TICKS),
+    ('<g class="fault minor"><circle cx="10" cy="8" r="7"/></g>', say.FAULT),
+    ('<g class="fault critical"><path d="M10 0L18 8L10 16L2 8Z"/></g>', say.CRITICAL_FAULT),
     ('<rect class="halt" x="1" y="0" width="18" height="16"/>', say.STOOD_STILL),
 )  # fmt: skip
 """The marks of the timeline, with their meanings."""
@@ -129,29 +129,19 @@ def _head(session: Session, *, full: bool) -> Iterator[str]:
     people = [person.name for person in session.people]
     policies = dict.fromkeys(game.policy for game in games)
     facts = [
-        ("When", f"{day_and_time(games[0].at)}{_until(session)}"),
-        ("Games", ", ".join(dict.fromkeys(WORLD_WORDS[game.world] for game in games))),
-        (say.WHO, ", ".join(people) or "nobody is named in the log"),
+        (say.FROM_TO, f"{day_and_time(games[0].at)}{_until(session)}"),
+        (say.WHERE, ", ".join(dict.fromkeys(WORLD_WORDS[game.world] for game in games))),
+        (say.WHO, ", ".join(people) or say.NOBODY_NAMED),
         *([("Policy", ", ".join(policies))] if full else []),
-        ("How long", _how_long(session)),
+        (say.HOW_LONG, say.how_long(session)),
     ]
     if len(games) == 1:
         facts.append((say.ENDED, ending_sentence(games[0])))
     else:
         facts.append((say.ALL_ENDED, all_endings(games)))
-    facts.append(("Faults", _fault_sum(session)))
+    facts.append((say.FAULTS_HEAD, say.fault_sum(session.faults)))
     rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in facts)
     yield f"<dl>{rows}</dl>"
-
-
-def _fault_sum(session: Session) -> str:
-    faults = session.faults
-    if not faults:
-        return "none"
-    there = sum(fault.status != OVER for fault in faults)
-    words = f"{len(faults)}, of which {sum(fault.critical for fault in faults)} critical"
-    at_end = f"{there} still there at the end" if there else "all over at the end"
-    return f"{words}; {at_end}"
 
 
 def _until(session: Session) -> str:
@@ -161,13 +151,6 @@ def _until(session: Session) -> str:
     begun = session.games[0].at.astimezone().date()
     same = ended.astimezone().date() == begun
     return f" to {f'{ended.astimezone():%H:%M}' if same else day_and_time(ended)}"
-
-
-def _how_long(session: Session) -> str:
-    if not session.timed:
-        return "not known: an older Tangy kept no times within a game"
-    paused = paused_words(session.staff_pauses)
-    return f"{length(session.seconds)}{paused}"
 
 
 def _care(session: Session) -> Iterator[str]:
@@ -244,7 +227,7 @@ def _faults(session: Session) -> Iterator[str]:
     if session.questions:
         yield heading(say.UNSURE)
         yield table(
-            ("game", "step", "what came of it"),
+            say.UNSURE_COLUMNS,
             [
                 (replay.game.number, fault.step, _last_words(fault))
                 for replay in session.replays

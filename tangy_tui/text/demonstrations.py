@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow
 from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.quality import quality_words
 
 LIST_HELP = (
     "One line for each demonstration: its number, who showed it and when, how many steps "
@@ -74,3 +76,8 @@ def steps_title(number: int) -> str:
 
 
 NONE_YET = "There are no demonstrations yet: begin with `tangy teach`."
+
+
+def row_document(row: ListRow) -> dict[str, Any]:
+    """Return a row of the list as JSON, with its notes in words."""
+    return {**row.to_json(), "notes": quality_words(row.notes)}

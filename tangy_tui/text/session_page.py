@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from tangy_tui.monitoring.fault import OVER
 from tangy_tui.text.faults import RECOVERY_WORDS
+from tangy_tui.text.report import paused_words
+from tangy_tui.text.times import length
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import Fault
+    from tangy_tui.monitoring.session import Session
 
 VISIT = "Tangy is with them"
+ASKS = "asks for help"
+TICKS = "number called, anything else"
+FAULT, CRITICAL_FAULT = "fault", "critical fault"
 STOOD_STILL = "Tangy stood still"
+FROM_TO, WHERE, HOW_LONG, FAULTS_HEAD = "When", "Games", "How long", "Faults"
 WHO = "Who took part"
+NOBODY_NAMED = "nobody is named in the log"
+NO_TIMES = "not known: an older Tangy kept no times within a game"
 ENDED = "How it ended"
 ALL_ENDED = "How they ended"
 CARE = "What to look after"
@@ -20,14 +31,31 @@ WHEN = "What happened when"
 RESPONDED = "How people responded"
 NOBODY_ASKED = "Nobody was asked for anything."
 BELIEFS = (
-    "Drawn is how likely each person is to comply with each strategy that was used: before "
-    "the session (ring) and after it (dot), with its 90% interval."
+    "The drawings show how likely each person is to do what Tangy asks, for each way of asking "
+    "that was used: before the session (ring) and after it (dot), with the 90% interval."
 )
 FAULTS = "Faults, and what was done about them"
 NO_FAULTS = "There were no faults."
 UNSURE = "Where Tangy did not know what to do"
+UNSURE_COLUMNS = ("game", "step", "what came of it")
 BEHAVIOURS = "What Tangy did where"
 SUMS = "Faults by criticality and recovery"
+
+
+def fault_sum(faults: Sequence[Fault]) -> str:
+    """Tell how many faults there were, and how many were still there at the end."""
+    if not faults:
+        return "none"
+    there = sum(fault.status != OVER for fault in faults)
+    words = f"{len(faults)}, of which {sum(fault.critical for fault in faults)} critical"
+    return f"{words}; {f'{there} still there at the end' if there else 'all over at the end'}"
+
+
+def how_long(session: Session) -> str:
+    """Tell how long the games lasted, and how long they were paused."""
+    if not session.timed:
+        return NO_TIMES
+    return f"{length(session.seconds)}{paused_words(session.staff_pauses)}"
 
 
 def drawn_words(drawn: int, games: int) -> str:

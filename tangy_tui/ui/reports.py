@@ -31,6 +31,7 @@ from tangy_tui.text.demonstrations import NONE_YET
 from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.people import COMPLIED
+from tangy_tui.text.quality import quality_words
 from tangy_tui.text.situations import agreement_words, conflict_lines
 from tangy_tui.text.times import local_time
 
@@ -161,9 +162,10 @@ def print_demonstrations(rows: Sequence[ListRow]) -> None:
     table = _table("Demonstrations", "", "teacher", "date", "steps", "shown", "state", "notes")
     for row in rows:
         style = "" if row.state == "in use" else "dim"
+        notes = Text("; ".join(quality_words(row.notes)))
         table.add_row(
             str(row.number), Text(plain(row.teacher)), local_time(row.at), str(row.steps),
-            f"{row.seen}/{row.situations}", row.state, Text("; ".join(row.notes)), style=style,
+            f"{row.seen}/{row.situations}", row.state, notes, style=style,
         )  # fmt: skip
     console.print(table)
 

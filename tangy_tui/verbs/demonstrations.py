@@ -42,12 +42,13 @@ def list_them(
     """List the demonstrations and their problems."""
     from tangy_tui.learning.demonstration_rows import list_rows
     from tangy_tui.learning.library import read_library
+    from tangy_tui.text.demonstrations import row_document
     from tangy_tui.ui import reports
 
     with open_workspace(data, activity, REGISTERED, write=False) as workspace:
         rows = list_rows(workspace.activity, read_library(workspace.store, workspace.activity.name))
         if as_json:
-            print_json([row.to_json() for row in rows])
+            print_json([row_document(row) for row in rows])
         else:
             reports.print_demonstrations([row for row in rows if row.state != "undone"])
 

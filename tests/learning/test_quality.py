@@ -23,6 +23,7 @@ from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.quality import quality_notes
+from tangy_tui.text.quality import quality_words
 from tests.shown import answering, log_demonstration
 from tests.support.append_body import append_body
 
@@ -45,7 +46,7 @@ def library_of(store: Store, *shown: Demonstration) -> Library:
 
 
 def notes(activity: Activity, library: Library, number: int) -> list[str]:
-    return quality_notes(activity, library.find(str(number)), library)
+    return quality_words(quality_notes(activity, library.find(str(number)), library))
 
 
 def test_a_good_demonstration_gets_no_note(
@@ -139,7 +140,7 @@ def test_the_origin_of_a_demonstration_is_noted(
     editor.split("3", 4)
     log_demonstration(store, replace(good[3], id="asked", steps=good[3].steps[:1], origin="asked"))
     library = read_library(store, "bingo")
-    said = [row.notes for row in list_rows(activity, library)]
+    said = [(*quality_words(row.notes),) for row in list_rows(activity, library)]
     assert "merged from demonstrations 1 and 2" in said[3]
     assert "a part of demonstration 3" in said[4]
     assert said[6] == ("answered in a game",)

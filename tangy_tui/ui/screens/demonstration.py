@@ -19,6 +19,7 @@ from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.quality import quality_notes
 from tangy_tui.text.demonstrations import AGAIN_DETAIL, NO_STEPS, again_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.quality import quality_words
 from tangy_tui.text.situations import step_words
 from tangy_tui.text.times import local_time
 from tangy_tui.ui.base import TangyScreen
@@ -120,7 +121,7 @@ class DemonstrationScreen(TangyScreen[None]):
         entry, shown = self._entry, self.shown
         notes = quality_notes(self._workspace.activity, entry, self._library)
         parts = [f"by {shown.teacher}", local_time(entry.at), counted(len(shown.steps), "step")]
-        return clean(", ".join([*parts, *notes]))
+        return clean(", ".join([*parts, *quality_words(notes)]))
 
     def _tell(self, number: int) -> None:
         self._number = max(1, number)

@@ -19,6 +19,7 @@ from tangy_tui.text import demonstrations as text
 from tangy_tui.text.conflicts import NONE_LEFT
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.quality import quality_words
 from tangy_tui.text.situations import edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -288,6 +289,6 @@ class DemonstrationsScreen(TangyScreen[None]):
     def _show_notes(self) -> None:
         """Show the notes of a demonstration, or why an edit is not possible."""
         if (row := self._chosen) is not None:
-            notes = ", ".join(row.notes) or "nothing to note"
+            notes = ", ".join(quality_words(row.notes)) or "nothing to note"
             said = self._refusal or f"{row.number}: {row.state}; {notes}."
             self.query_one("#notes", Static).update(clean(said))

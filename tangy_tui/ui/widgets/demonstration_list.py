@@ -9,6 +9,7 @@ from textual.message import Message
 
 from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.text.demonstrations import LIST_HELP, NONE_TO_LIST
+from tangy_tui.text.quality import quality_words
 from tangy_tui.text.times import local_time
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
@@ -74,12 +75,12 @@ def demonstration_lines(
 def _row(row: ListRow, marked: bool, widths: tuple[int, int, int]) -> Row:
     teacher, state, notes = widths
     ink = "text" if row.in_use else "dim"
-    seen = f"{row.seen}/{row.situations}"
+    seen, told = f"{row.seen}/{row.situations}", ", ".join(quality_words(row.notes))
     return (
         ("★ " if marked else "  ", "good"),
         (f"{row.number:>3}  ", "strong" if row.in_use else "dim"),
         (f"{fit(clean(row.teacher), teacher)}  {local_time(row.at)}  ", ink),
         (f"{row.steps:>5}  {seen:<5}  ", ink),
         (fit(clean(row.state), state), "good" if row.in_use else "warn"),
-        (f"  {shorten(clean(', '.join(row.notes)), notes)}" if notes else "", "text"),
+        (f"  {shorten(clean(told), notes)}" if notes else "", "text"),
     )
