@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -33,7 +34,12 @@ def evenly(points: Floats, most: int) -> Floats:
     """Return at most so many of the points (n, 2), evenly spaced."""
     if len(points) <= most:
         return points
-    return points[np.linspace(0, len(points) - 1, most).round().astype(np.intp)]
+    return points.take(_spaced(len(points), most), axis=0)
+
+
+@lru_cache(maxsize=1024)
+def _spaced(count: int, most: int) -> NDArray[np.intp]:
+    return np.linspace(0, count - 1, most).round().astype(np.intp)
 
 
 def covered(scan: Scan) -> bool:
@@ -67,6 +73,8 @@ class LikelihoodField:
         """
         self.map = map_
         self._resolution = map_.resolution * coarse
+        self._scale = 1.0 / self._resolution
+        self._origin = 1.0 - np.asarray(map_.origin) * self._scale
         rows, columns = (
             np.minimum(np.arange(0, size, coarse) + coarse // 2, size - 1) for size in map_.shape
         )
@@ -89,25 +97,35 @@ class LikelihoodField:
         count = len(points)
         share = np.full(count, 1 / max(count, 1), dtype=np.float32)
         at_once = max(1, IN_CACHE // max(count, 1))
+        turned, ends = self._transforms(poses), _homogeneous(points)
         found = [
-            self.beams(poses[first : first + at_once], points) @ share
+            self._values(turned[:, first : first + at_once] @ ends) @ share
             for first in range(0, len(poses), at_once)
         ]
         return np.concatenate(found, dtype=np.float64) if found else np.zeros(0)
 
     def beams(self, poses: Floats, points: Floats) -> Field:
         """Return the likelihood of each beam at each pose (m, n)."""
-        # in cells, single precision: .1 mm on a map of 100 m
-        scale, heading = np.float32(1.0 / self._resolution), poses[:, 2].astype(np.float32)
+        return self._values(self._transforms(poses) @ _homogeneous(points))
+
+    def _transforms(self, poses: Floats) -> Field:
+        """Return the transforms (2, m, 3) of homogeneous points at poses to columns and rows.
+
+        In cells, single precision: .1 mm on a map of 100 m.
+        """
+        heading = poses[:, 2].astype(np.float32)
         turned = np.empty((2, len(poses), 3), dtype=np.float32)
-        turned[0, :, 0] = turned[1, :, 1] = np.cos(heading) * scale
-        turned[1, :, 0] = np.sin(heading) * scale
-        turned[0, :, 1] = -turned[1, :, 0]
-        turned[0, :, 2], turned[1, :, 2] = self._cells(poses[:, 0], poses[:, 1])
-        ends = np.ones((3, len(points)), dtype=np.float32)
-        ends[:2] = points.T
-        column, row = turned[0] @ ends, turned[1] @ ends
-        return np.asarray(self._flat.take(self._index(column, row), mode="wrap"))
+        cos, sin = turned[1, :, 1], turned[1, :, 0]
+        np.multiply(np.cos(heading), self._scale, out=cos)
+        np.multiply(np.sin(heading), self._scale, out=sin)
+        turned[0, :, 0] = cos
+        np.negative(sin, out=turned[0, :, 1])
+        turned[:, :, 2] = self._cells(poses[:, :2]).T
+        return turned
+
+    def _values(self, cells: Field) -> Field:
+        """Return the field's values at columns and rows (2, m, n), which it overwrites."""
+        return np.asarray(self._flat.take(self._index(cells), mode="wrap"))
 
     def tells(self, pose: Pose, points: Floats, share: float) -> bool:
         """Return whether the map explains or contradicts at least this share of beams (n, 2).
@@ -137,29 +155,38 @@ class LikelihoodField:
         far = lengths(points)
         steps = np.arange(0.0, far.max(initial=0.0) - SHORT, self._resolution)[:, None]
         along = (transform_points(points, pose) - (pose.x, pose.y)) / np.maximum(far, 1e-9)[:, None]
-        cells = self._cells(pose.x + steps * along[:, 0], pose.y + steps * along[:, 1])
-        walls = self._walls.take(self._index(*cells), mode="wrap")
+        start = np.array([[pose.x], [pose.y]])
+        cells = self._cells((start[:, None] + steps * along.T[:, None]).T).T
+        walls = self._walls.take(self._index(cells), mode="wrap")
         return np.asarray((walls & (steps < far - SHORT)).any(axis=0))
 
     def on_floor(self, poses: Floats) -> NDArray[np.bool_]:
         """Return whether each of the poses (m, 3) lies on free floor."""
-        return np.asarray(self._free.take(self._index(*self._cells(poses[:, 0], poses[:, 1]))))
+        return np.asarray(self._free.take(self._index(self._cells(poses[:, :2]).T)))
 
-    def _cells(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Return the columns and rows, with fractions, of points."""
-        left, near = self.map.origin
-        scale = 1.0 / self._resolution
-        return (x - left) * scale + 1, (y - near) * scale + 1
+    def _cells(self, points: Floats) -> Floats:
+        """Return the columns and rows, with fractions, of points (..., 2)."""
+        return points * self._scale + self._origin
 
-    def _index(self, column: NDArray[Any], row: NDArray[Any]) -> NDArray[np.intp]:
-        """Return the index of each cell; the nearest one for those outside. Overwrites both."""
+    def _index(self, cells: NDArray[Any]) -> NDArray[np.intp]:
+        """Return the index of each cell (2, ...); the nearest one for those outside.
+
+        Overwrites the cells.
+        """
         rows, columns = self._field.shape
-        for values, most in ((column, columns - 1), (row, rows - 1)):
+        for values, most in zip(cells, (columns - 1, rows - 1), strict=True):
             np.clip(values, 0, most, out=values)
-        index = row.astype(np.int32)
+        column, index = cells.astype(np.int32)
         index *= np.int32(columns)
-        index += column.astype(np.int32)
+        index += column
         return index.astype(np.intp)  # `take` converts others, and more slowly
+
+
+def _homogeneous(points: Floats) -> Field:
+    """Return points (n, 2) as columns (3, n)."""
+    ends = np.ones((3, len(points)), dtype=np.float32)
+    ends[:2] = points.T
+    return ends
 
 
 def _walls(map_: OccupancyMap) -> NDArray[np.bool_]:

@@ -61,10 +61,10 @@ def around(
 
 
 def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
-    cells = np.floor(particles / (width, width, angle)).astype(np.int64)
-    cells -= cells.min(axis=0)
-    _, columns, headings = (int(n) + 1 for n in cells.max(axis=0))
-    return np.asarray((cells[:, 0] * columns + cells[:, 1]) * headings + cells[:, 2])
+    x, y, heading = np.floor(np.ascontiguousarray((particles / (width, width, angle)).T))
+    columns, headings = y.max() - y.min() + 1, heading.max() - heading.min() + 1
+    bins = ((x - x.min()) * columns + (y - y.min())) * headings + (heading - heading.min())
+    return np.asarray(bins.astype(np.int64))
 
 
 def needed(particles: Floats) -> int:
@@ -86,19 +86,18 @@ def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> 
     return particles.take(np.minimum(chosen, len(particles) - 1), axis=0)
 
 
-def mean(particles: Floats, weights: Floats) -> Pose:
-    """Return the weighted mean of particles (n, 3)."""
-    total = weights.sum()
-    x, y = weights @ particles[:, :2] / total
-    heading = atan2(weights @ np.sin(particles[:, 2]), weights @ np.cos(particles[:, 2]))
-    return Pose(float(x), float(y), heading)
+def _mean(rows: Floats, weights: Floats) -> Pose:
+    """Return the weighted mean of poses: x, y, and sine and cosine of the heading (4, n)."""
+    x, y, sin, cos = (rows @ weights / weights.sum()).tolist()
+    return Pose(x, y, atan2(sin, cos))
 
 
 def near(particles: Floats, pose: Pose) -> NDArray[np.bool_]:
     """Return which of the particles (n, 3) belong to the cluster around a pose."""
-    off = np.hypot(particles[:, 0] - pose.x, particles[:, 1] - pose.y)
-    turned = np.abs(wrap(particles[:, 2] - pose.heading))
-    return np.asarray((off < CLUSTER) & (turned < CLUSTER_ANGLE))
+    x, y, heading = (particles - np.asarray(pose)).T
+    turned = np.abs(heading)  # below 2 pi, as both headings are wrapped
+    turns = (turned < CLUSTER_ANGLE) | (turned > 2 * pi - CLUSTER_ANGLE)
+    return np.asarray((x * x + y * y < CLUSTER**2) & turns)
 
 
 def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
@@ -107,12 +106,14 @@ def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
     if bins.max() > MOST_BINS:
         _, bins = np.unique(bins, return_inverse=True)
     inside = bins == np.argmax(np.bincount(bins, weights))
-    guess = mean(particles[inside], weights[inside])
+    headings = particles[:, 2]
+    rows = np.vstack((particles[:, :2].T, np.sin(headings), np.cos(headings)))
+    guess = _mean(rows, weights * inside)
     for _ in range(2):
         before, inside = inside, near(particles, guess)
         if not inside.any() or np.array_equal(before, inside):
             break
-        guess = mean(particles[inside], weights[inside])
+        guess = _mean(rows, weights * inside)
     offs = particles[inside] - np.asarray(guess)
     offs[:, 2] = wrap(offs[:, 2])
     share = weights[inside] / weights[inside].sum() if inside.any() else weights[inside]

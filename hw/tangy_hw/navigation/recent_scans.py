@@ -7,7 +7,7 @@ A pose is followed back along the odometry, and refined at each scan, because th
 from __future__ import annotations
 
 from collections import deque
-from math import hypot, inf, log
+from math import hypot, inf, log, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.likelihood import FLOOR, LikelihoodField, evenly
 from tangy_hw.navigation.particles import move
 from tangy_hw.navigation.pose_search import Nudges, nudged
-from tangy_hw.navigation.poses import IDENTITY, Floats, relative_pose, wrap
+from tangy_hw.navigation.poses import IDENTITY, Floats, relative_pose
 
 APART, TURN_APART = 0.3, 0.3  # metres or radians between two scans that are kept
 FEWEST, KEPT = 6, 12  # scans needed to compare places, and scans kept
@@ -123,7 +123,9 @@ class RecentScans:
 def _distinct(poses: Floats, most: int) -> Floats:
     """Return the first `most` of the poses (n, 3) that contradict each other."""
     x, y, heading = poses.T[:, :, None] - poses.T[:, None, :]
-    agree = (np.hypot(x, y) <= ELSEWHERE) & (np.abs(wrap(heading)) <= ELSEWHERE)
+    turned = np.abs(heading)  # below 2 pi, as headings are wrapped
+    agree = x * x + y * y <= ELSEWHERE**2
+    agree &= (turned <= ELSEWHERE) | (turned >= 2 * pi - ELSEWHERE)
     left = np.ones(len(poses), dtype=np.bool_)
     chosen: list[int] = []
     while left.any() and len(chosen) < most:
