@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import ceil
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -152,13 +153,17 @@ class LikelihoodField:
 
     def _crosses(self, pose: Pose, points: Floats) -> NDArray[np.bool_]:
         """Return whether each beam crosses a wall more than `SHORT` before its end."""
-        far = lengths(points)
-        steps = np.arange(0.0, far.max(initial=0.0) - SHORT, self._resolution)[:, None]
-        along = (transform_points(points, pose) - (pose.x, pose.y)) / np.maximum(far, 1e-9)[:, None]
-        start = np.array([[pose.x], [pose.y]])
-        cells = self._cells((start[:, None] + steps * along.T[:, None]).T).T
-        walls = self._walls.take(self._index(cells), mode="wrap")
-        return np.asarray((walls & (steps < far - SHORT)).any(axis=0))
+        far = lengths(points) / self._resolution  # in cells, as the steps are
+        most = far - SHORT / self._resolution
+        steps = np.ones((max(0, ceil(most.max(initial=0.0))), 2), dtype=np.float32)
+        steps[:, 0] = np.arange(len(steps))
+        lines = np.empty((2, 2, len(points)), dtype=np.float32)
+        here = np.array([pose.x, pose.y])
+        lines[:, 0] = ((transform_points(points, pose) - here) / np.maximum(far, 1e-9)[:, None]).T
+        lines[:, 0] *= self._scale
+        lines[:, 1] = self._cells(here)[:, None]
+        walls = self._walls.take(self._index(steps @ lines), mode="wrap")
+        return np.asarray((walls & (steps[:, :1] < most)).any(axis=0))
 
     def on_floor(self, poses: Floats) -> NDArray[np.bool_]:
         """Return whether each of the poses (m, 3) lies on free floor."""
@@ -179,7 +184,7 @@ class LikelihoodField:
         column, index = cells.astype(np.int32)
         index *= np.int32(columns)
         index += column
-        return index.astype(np.intp)  # `take` converts others, and more slowly
+        return np.asarray(index.astype(np.intp))  # `take` converts others, and more slowly
 
 
 def _homogeneous(points: Floats) -> Field:
