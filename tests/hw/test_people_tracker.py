@@ -108,6 +108,16 @@ class TestTracks:
         off, track = nearest(watching.tracker.tracks, person)
         assert off < 0.1 and track.speed == 0.0 and track.stood > 1.0 and track.person
 
+    @pytest.mark.parametrize("seed", [1, 2, 3, 4])
+    def test_who_sets_off_counts_as_walking_within_two_scans(self, seed: int) -> None:
+        person = Person(5.2, 2.6, 0.4)
+        watching = Watching(drive([person], seed))
+        watching.watch(2.5)
+        person.step = walks(-pi / 2, 0.7).step
+        watching.watch(3 * TICK)  # where they stood, and two steps further
+        track = nearest(watching.tracker.tracks, person)[1]
+        assert track.stood == 0.0 and track.vy < -0.2 and track.pace > 0.2
+
     def test_the_motion_of_the_robot_gives_people_no_speed(self) -> None:
         person = Person(5.3, 3.4, 0.4)
         watching = Watching(drive([person]))
