@@ -93,6 +93,11 @@ class TestPeople:
         assert 0 < limited[0].forward < past(Twist(0.5, 0.0), replace(away, pace=0.0)).forward
         assert LIMITS.turned_faster >= 0.6  # with less, robots touched people who turned
 
+    def test_the_robot_does_not_set_off_beside_a_walker_who_turns_round(self) -> None:
+        turns = replace(person(0.24, -0.71, -0.17, -0.13), pace=1.18)  # slow, at the turn itself
+        assert past(Twist(0.05, 0.0), turns) == STILL
+        assert past(Twist(0.05, 0.0), replace(turns, pace=0.0)) != STILL
+
     def test_the_robot_stops_for_a_person_crossing_its_path(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
 

@@ -100,16 +100,16 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
             one.vy,
             one.half + limits.margin,
             limits.approach_new if one.age < FRESH else limits.approach,
+            # a walker who turns round has no speed for a moment
+            FURTHER if max(one.speed, one.pace) > WALKS else -NEARER,
             _turned(one, limits),
         )
         for one in tracks
     ]
-    rows += [(x, y, 0.0, 0.0, END + limits.margin, limits.approach, 0.0) for x, y in ends]
-    table = np.array(rows, dtype=np.float64).reshape(-1, 7)
-    apart = table[:, 4]
-    walks = np.hypot(table[:, 2], table[:, 3]) > WALKS
-    leeway = np.where(walks, FURTHER, -NEARER)
-    return _Bodies(table[:, :2], table[:, 2:4], apart, table[:, 5], leeway, table[:, 6])
+    apart = END + limits.margin
+    rows += [(x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0) for x, y in ends]
+    table = np.array(rows, dtype=np.float64).reshape(-1, 8)
+    return _Bodies(table[:, :2], table[:, 2:4], *table[:, 4:].T)
 
 
 def _turned(one: Track, limits: MotionLimits) -> float:
