@@ -193,6 +193,12 @@ class TestLateBase:
         told = commands_to_a_late_base(seconds=4.0, moves=False)
         assert 0 < max(told) <= limits.acceleration * (limits.latency + 0.1) + 1e-9
 
+    def test_a_base_that_was_told_to_stop_starts_from_where_it_has_slowed_to(self) -> None:
+        limits = MotionLimits(full_braking=1.0, latency=0.3)
+        for told, measured, reached in ((0.0, 0.35, 0.05), (0.2, 0.35, 0.2), (0.0, 0.1, 0.0)):
+            twist = limits.reached(Twist(told, 0.0), Twist(measured, 0.0))
+            assert twist == pytest.approx(Twist(reached, 0.0))
+
     @pytest.mark.parametrize("side", [-1, 1])
     def test_a_turn_grows_as_far_as_the_base_can_have_come_since_it_was_measured(
         self, side: int

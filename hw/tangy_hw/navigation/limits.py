@@ -83,9 +83,10 @@ class MotionLimits:
 
         Commands and odometry lag: the measured speed is older than the last command.
         """
-        forward = min(told.forward, measured.forward + self.acceleration * self.latency)
+        least = measured.forward - self.full_braking * self.latency
+        most = measured.forward + self.acceleration * self.latency
         turn = min(abs(told.turn), abs(measured.turn) + self.turn_acceleration * self.latency)
-        return Twist(max(measured.forward, forward), max(abs(measured.turn), turn))
+        return Twist(max(least, min(told.forward, most)), max(abs(measured.turn), turn))
 
 
 def laser_of(robot: Robot) -> Pose:
