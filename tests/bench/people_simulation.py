@@ -119,6 +119,7 @@ class Drive:
     people: list[Person]
     rng: Generator
     away: Away = disc
+    longest: float = LONGEST
     pose: Pose = field(init=False)
     twist: Twist = STILL
     time: float = 0.0
@@ -143,7 +144,7 @@ class Drive:
         wheels, sent = Wheels(self.rng), [STILL] * LATE
         navigator.go(self.goal)
         scan: Scan | None = None
-        while self.time < LONGEST and not self.arrived:
+        while self.time < self.longest and not self.arrived:
             if scan is None or self.rng.random() >= NO_SCAN:
                 scan = self.look()
             told = navigator.tick(Odometry(wheels.pose, self.twist), scan, TICK)
