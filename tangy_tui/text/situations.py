@@ -18,7 +18,7 @@ from tangy_tui.learning.verification import (
     Verification,
 )
 from tangy_tui.text.activities import facts_words
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, often
 from tangy_tui.text.refusals import not_understood_words, refused_words
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> 
     lines = [f"Demonstrations disagree: {activity.in_words(conflict.situation)}."]
     for number, (behaviour, steps) in enumerate(conflict.answers.items(), 1):
         words = activity.behaviour_words(behaviour)
-        lines.append(f"  {number}. {words}, shown {counted(len(steps), 'time')}:")
+        lines.append(f"  {number}. {words}, shown {often(len(steps))}:")
         lines += [
             plain(f"       step {s.number} of {library.name(s.demonstration)}, by {s.teacher}")
             for s in steps[:MOST_STEPS]

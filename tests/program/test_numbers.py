@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_tui.text.numbers import counted, listed, ordinal
+from tangy_tui.text.numbers import counted, listed, often, ordinal
 
 PROGRAM = Path(__file__).parents[2] / "tangy_tui"
 
@@ -54,6 +54,31 @@ def plural_rules(source: Path) -> list[str]:
 
 def _is_s(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and node.value == "s"
+
+
+@pytest.mark.parametrize(
+    ("times", "words"),
+    [(0, "never"), (1, "once"), (2, "twice"), (3, "3 times"), (1200, "1,200 times")],
+)
+def test_how_often_is_worded(times: int, words: str) -> None:
+    assert often(times) == words
+
+
+@pytest.mark.slow
+def test_how_often_is_worded_in_one_place() -> None:
+    """`counted(n, "time")` would write "1 time"."""
+    calls = (
+        (source, node)
+        for source in PROGRAM.rglob("*.py")
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and len(node.args) >= 2
+    )
+    found = {
+        source.relative_to(PROGRAM).as_posix()
+        for source, node in calls
+        if ast.unparse(node.func) == "counted" and ast.unparse(node.args[1]) == "'time'"
+    }
+    assert found == {"text/numbers.py"}
 
 
 @pytest.mark.slow

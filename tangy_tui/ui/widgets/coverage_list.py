@@ -10,6 +10,7 @@ from textual import events
 from textual.binding import Binding, BindingType
 
 from tangy_tui.text.coach import ALL_SHOWN
+from tangy_tui.text.numbers import often
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.rows import Row, RowView, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
@@ -68,7 +69,7 @@ class CoverageList(RowView, can_focus=True):
         for sentence in self._missing:
             rows += _sentence("! ", clean(sentence), "text", width)
         for words, times in self._seen:
-            count = ", once" if times == 1 else f", {times} times"
+            count = f", {often(times)}"
             rows.append(
                 (
                     ("✓ ", "good"),
