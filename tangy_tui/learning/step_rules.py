@@ -40,15 +40,10 @@ class StepRules:
 
     def choices(self, shown: Demonstration) -> tuple[RuleChoice, ...] | NoRule:
         """Return the rules that the last step of a demonstration can get, widest first."""
-        activity = self._activity
-        if not shown.steps:
-            return NoRule("no step")
-        step = shown.steps[-1]
-        if not isinstance(activity, DeclaredActivity):
-            return NoRule("no facts")
-        facts = tuple(seen_facts(step.state.situation))
-        if not facts:
-            return NoRule("no facts")
+        last = self._last_step(shown)
+        if isinstance(last, NoRule):
+            return last
+        activity, step, facts = last
         offered = [facts] if len(facts) == 1 else [facts, *((one,) for one in facts)]
         covers = [(one, len(self._covered(activity, step, one))) for one in offered]
         found = tuple(RuleChoice(one, number) for one, number in covers if number)
@@ -56,19 +51,14 @@ class StepRules:
 
     def note(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
         """Add a rule to the last step of a demonstration, or return why that is not possible."""
-        activity = self._activity
-        if not shown.steps:
-            return NoRule("no step")
-        step = shown.steps[-1]
-        if not isinstance(activity, DeclaredActivity):
-            return NoRule("no facts")
-        facts = seen_facts(step.state.situation)
-        if not facts:
-            return NoRule("no facts")
-        whatever = command.facts or tuple(facts)
+        last = self._last_step(shown)
+        if isinstance(last, NoRule):
+            return last
+        activity, step, facts = last
+        whatever = command.facts or facts
         for fact in whatever:
             if fact not in facts:
-                return NoRule("not gone by", fact, tuple(facts))
+                return NoRule("not gone by", fact, facts)
         covers = self._covered(activity, step, whatever)
         if not covers:
             return NoRule("all shown")
@@ -94,6 +84,18 @@ class StepRules:
                 editor.undo()
         self._noted.pop()
         return RuleUndone(ruled)
+
+    def _last_step(
+        self, shown: Demonstration
+    ) -> tuple[DeclaredActivity, Step, tuple[str, ...]] | NoRule:
+        """Return the activity, the last step, and the facts that its stage sees."""
+        if not shown.steps:
+            return NoRule("no step")
+        step, activity = shown.steps[-1], self._activity
+        if not isinstance(activity, DeclaredActivity):
+            return NoRule("no facts")
+        facts = tuple(seen_facts(step.state.situation))
+        return (activity, step, facts) if facts else NoRule("no facts")
 
     def _covered(
         self, activity: DeclaredActivity, step: Step, whatever: tuple[str, ...]

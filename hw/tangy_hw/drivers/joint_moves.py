@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Mapping
 
 from tangy_hw.device_protocols import DeviceError
+from tangy_hw.drivers.completion import Completion
 from tangy_hw.drivers.latest_value import awaited
 from tangy_profiles.reading import plain
 
@@ -81,18 +81,10 @@ class JointMoves:
         return here is not None and abs(here - goal) <= self._tolerance
 
 
-class _Move:
+class _Move(Completion):
     """A movement; every joint must report since its start."""
 
     def __init__(self, goals: Mapping[str, float]) -> None:
+        super().__init__()
         self.goals = goals
         self.heard: set[str] = set()
-        self.over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
-
-    def end(self, why: str = "") -> None:
-        if not self.over.done():
-            if why:
-                self.over.set_exception(DeviceError(why))
-            else:
-                self.over.set_result(None)

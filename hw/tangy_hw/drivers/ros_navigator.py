@@ -10,6 +10,7 @@ from itertools import count
 from typing import Any, Literal
 
 from tangy_hw.device_protocols import DeviceError, Pose, Stamped
+from tangy_hw.drivers.completion import Completion
 from tangy_hw.drivers.latest_value import LatestValue, awaited
 from tangy_hw.drivers.ros_messages import (
     Message,
@@ -343,22 +344,13 @@ class RosNavigator:
         self._pose.take(seen_from(pose_of(message["pose"]["pose"]), self._origin))
 
 
-class _Drive:
+class _Drive(Completion):
     """A goal in progress: whether it was accepted, and its result."""
 
     def __init__(self, key: str) -> None:
+        super().__init__()
         self.key = key
         self.goal: Goal | None = None
         self.lost = self.given_up = False
         self.told = -math.inf  # time of the last repeated cancellation
-        loop = asyncio.get_running_loop()
-        self.taken: asyncio.Future[None] = loop.create_future()
-        self.over: asyncio.Future[None] = loop.create_future()
-        self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
-
-    def end(self, why: str = "") -> None:
-        if not self.over.done():
-            if why:
-                self.over.set_exception(DeviceError(why))
-            else:
-                self.over.set_result(None)
+        self.taken: asyncio.Future[None] = asyncio.get_running_loop().create_future()

@@ -6,6 +6,8 @@ import asyncio
 import socket
 from collections.abc import Iterable
 
+from tangy_sim.servers.connections import Connections
+
 PATHS = ("/head", "/infrared")
 BOUNDARY = b"frame"
 HEAD = (
@@ -18,7 +20,7 @@ KERNEL_BYTES = 1 << 17
 """Bytes buffered for a slow viewer; more would only hold old frames."""
 
 
-class JpegStream:
+class JpegStream(Connections["_Viewer"]):
     """One camera: it sends every viewer the newest JPEG; slow viewers skip frames.
 
     Faults: while `frozen`, each new frame repeats the last one; while `closed`, viewers are
@@ -26,6 +28,7 @@ class JpegStream:
     """
 
     def __init__(self, path: str) -> None:
+        super().__init__()
         self.path = path
         self.frozen = False
         self.hangs = False
@@ -34,32 +37,18 @@ class JpegStream:
         """Number of frames pushed."""
         self.rate = 0.0
         """Maximum frames a second sent to a viewer; 0: all."""
-        self._closed = False
-        self._viewers: set[_Viewer] = set()
-
-    @property
-    def closed(self) -> bool:
-        """Whether viewers are disconnected."""
-        return self._closed
-
-    @closed.setter
-    def closed(self, so: bool) -> None:
-        self._closed = so
-        if so:
-            for viewer in tuple(self._viewers):
-                viewer.cut()
 
     @property
     def viewers(self) -> int:
         """Number of viewers."""
-        return len(self._viewers)
+        return len(self.connections)
 
     def push(self, jpeg: bytes) -> None:
         """Send a new frame."""
         self.pushed += 1
         if not (self.frozen and self.newest):
             self.newest = jpeg
-        for viewer in tuple(self._viewers):
+        for viewer in tuple(self.connections):
             viewer.show(self.newest)
 
 
@@ -125,7 +114,7 @@ class _Viewer(asyncio.Protocol):
     def cut(self) -> None:
         """Disconnect."""
         if self._camera is not None:
-            self._camera._viewers.discard(self)
+            self._camera.connections.discard(self)
         if self._timer is not None:
             self._timer.cancel()
         if self._transport is not None:
@@ -175,7 +164,7 @@ class _Viewer(asyncio.Protocol):
             self.cut()
             return
         self._camera = camera
-        camera._viewers.add(self)
+        camera.connections.add(self)
         self._server._ready.set()
         self.show(camera.newest)
 

@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tangy_sim.servers.connections import Connections
 from tangy_sim.servers.scip_session import CLOCK, URG, Scanner, ScipSession
 
 MOST_UNSENT = 1 << 18
@@ -27,7 +28,7 @@ class _Wire(Protocol):
     def cut(self) -> None: ...
 
 
-class ScipServer:
+class ScipServer(Connections[_Wire]):
     """Answers as a SCIP 2.0 scanner, and sends each scan to every measuring client.
 
     Faults: while `silent`, it sends nothing, and requests are lost; while `closed`, connections are
@@ -36,6 +37,7 @@ class ScipServer:
     """
 
     def __init__(self, scanner: Scanner = URG) -> None:
+        super().__init__()
         self.scanner = scanner
         self.silent = False
         self.fault = ""
@@ -44,9 +46,7 @@ class ScipServer:
         self.port = 0
         self.cable: Callable[[bytes], bytes] = bytes
         """Transmission fault applied to replies."""
-        self._closed = False
         self._now = 0
-        self._wires: set[_Wire] = set()
         self._server: asyncio.Server | None = None
         self._ready = asyncio.Event()
 
@@ -56,21 +56,9 @@ class ScipServer:
         return f"tcp://127.0.0.1:{self.port}"
 
     @property
-    def closed(self) -> bool:
-        """Whether connections are cut."""
-        return self._closed
-
-    @closed.setter
-    def closed(self, so: bool) -> None:
-        self._closed = so
-        if so:
-            for wire in tuple(self._wires):
-                wire.cut()
-
-    @property
     def measuring(self) -> int:
         """Number of clients waiting for scans."""
-        return sum(wire.session.measuring for wire in self._wires)
+        return sum(wire.session.measuring for wire in self.connections)
 
     async def start(self, host: str = "127.0.0.1", port: int = 0) -> None:
         """Start to listen, by default at a free port."""
@@ -89,13 +77,14 @@ class ScipServer:
         if path:
             near = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
             far = path
-            self._wires.add(_Port(self, near))
+            self.connections.add(_Port(self, near))
         else:
             near, other = os.openpty()
             tty.setraw(other)
             os.set_blocking(near, False)
             far = os.ttyname(other)
-            self._wires.add(_Port(self, near, held=other))  # keeps it open when a client leaves
+            # The held end keeps the port open when a client leaves.
+            self.connections.add(_Port(self, near, held=other))
             return far
         tty.setraw(near)
         return far
@@ -115,7 +104,7 @@ class ScipServer:
         self._now = stamp_ms
         distances = in_millimetres(self.scanner, ranges)
         got = 0
-        for wire in tuple(self._wires):
+        for wire in tuple(self.connections):
             wire.session.fault = self.fault
             if not self.silent and wire.unsent < MOST_UNSENT:
                 got += wire.session.offer(distances, stamp_ms % CLOCK)
@@ -130,17 +119,16 @@ class ScipServer:
 
     async def close(self) -> None:
         """Stop, and close all connections."""
-        for wire in tuple(self._wires):
-            wire.cut()
+        self.cut()
         if self._server is not None:
             self._server.close()
             await self._server.wait_closed()
 
     def _joined(self, wire: _Wire) -> None:
-        self._wires.add(wire)
+        self.connections.add(wire)
 
     def _left(self, wire: _Wire) -> None:
-        self._wires.discard(wire)
+        self.connections.discard(wire)
 
     def _heard(self, wire: _Wire, came: bytes) -> None:
         if not self.silent:
