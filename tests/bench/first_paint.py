@@ -1,4 +1,6 @@
-"""CPU until the first screen is readable: `tangy`, beside the SQL client harlequin.
+"""CPU until the first screen is readable, and of `tangy --version`, beside two yardsticks.
+
+The screen is compared with that of the SQL client harlequin, the version with `import typer`.
 
 Run by hand: `python tests/bench/first_paint.py HARLEQUIN` with the path of harlequin's program.
 Each is started in a pty of 120 x 40, and a terminal in memory reads its output. When a word of
@@ -69,6 +71,32 @@ def cpu_until(word: str, command: Sequence[str], home: str) -> tuple[float, floa
         os.close(parent)
 
 
+def cpu_of(command: Sequence[str]) -> float:
+    """Return CPU seconds (user and system) of a command that ends by itself."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)  # noqa: S603 - our own commands
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise SystemExit(f"{command[0]} failed")
+    return used.ru_utime + used.ru_stime
+
+
+def print_version(tangy: str) -> None:
+    """Print the CPU of `tangy --version` beside that of importing typer, which parses its options.
+
+    Neither takes long, so each runs three times as often as a screen.
+    """
+    mine, theirs = list[float](), list[float]()
+    for turn in range(3 * ROUNDS + 1):
+        ours, typer = cpu_of([tangy, "--version"]), cpu_of([sys.executable, "-c", "import typer"])
+        if turn:
+            mine.append(ours)
+            theirs.append(typer)
+    print(f"  tangy --version {'':30}  {median(mine):7.3f}")
+    print(f"  python -c 'import typer' {'':21}  {median(theirs):7.3f}")
+    print(f"  ratio of CPU (wanted: at most 1.5) {'':8}   {median(mine) / median(theirs):7.2f}")
+
+
 def compiled() -> bool:
     """Return whether every module of Tangy has an up-to-date compiled file beside it."""
     folders = [tangy_tui, tangy_profiles]
@@ -105,6 +133,7 @@ def main() -> None:
         )
     ratio = median(m[0] for m in rows["tangy"]) / median(m[0] for m in rows["harlequin"])
     print(f"  ratio of CPU (wanted: at most .40) {'':8}  {ratio:7.2f}")
+    print_version(tangy)
 
 
 if __name__ == "__main__":
