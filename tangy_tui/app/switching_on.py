@@ -76,7 +76,11 @@ class SwitchingOn(Generic[Opened]):
 
 @contextmanager
 def switched_on(
-    opening: Opening[Opened], *, stepped: bool, tell: Callable[[str], object] = lambda part: None
+    opening: Opening[Opened],
+    *,
+    stepped: bool,
+    tell: Callable[[str], object] = lambda part: None,
+    meanwhile: Callable[[], object] = lambda: None,
 ) -> Iterator[Opened]:
     """Switch a robot on for a program without a screen, and off again however that ends.
 
@@ -84,6 +88,7 @@ def switched_on(
         opening: opens the robot, or its bench.
         stepped: run simulated time as fast as possible, on a bench.
         tell: called with the name of each part when it is started.
+        meanwhile: called again and again until the robot is on.
 
     Raises:
         TangyError: it cannot be switched on.
@@ -97,6 +102,7 @@ def switched_on(
                 opened = thread.submit(robot.open)
                 told = 0
                 while not wait([opened], HEARD_AFTER).done:
+                    meanwhile()
                     for part in robot.parts[told:]:
                         tell(part)
                         told += 1

@@ -19,7 +19,9 @@ from tangy_tui.app.game_commands import (
     Joins,
     LetWin,
     SetPace,
+    StopRobot,
 )
+from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.text import set_up as text
 from tangy_tui.text.control import noted_words
@@ -103,21 +105,48 @@ class SetUpLines:
         near = get_close_matches(first, text.COMMANDS, 1, NEAR)
         self._write(text.not_known_words(words, near[0] if near else ""))
 
-    def begins_anyway(self) -> bool:
-        """Write the results of the checks; if one has failed, ask whether to begin."""
+    def use(self, read: Callable[[], str | None], write: Callable[[str], None]) -> None:
+        """Read and write otherwise from now on."""
+        self._read, self._write = read, write
+
+    def begins_anyway(self, *, stopped: bool = False) -> bool:
+        """Write the results of the checks; if one has failed, ask whether to begin.
+
+        Args:
+            stopped: whether staff stopped the robot while it was switched on: then it asks, too.
+        """
         for seconds in self.setup.settling():
             sleep(seconds)
         for check in self.setup.checks():
             self._write(f"  {text.NAMES[check.name]}: {text.line_of(check)}")
         not_ready = self.setup.not_ready
-        if not not_ready:
+        if stopped:
+            self._stop()
+        if not_ready:
+            self._write(text.lines_anyway(not_ready))
+        if not (not_ready or stopped):
             return True
-        self._write(text.lines_anyway(not_ready))
         while (line := self._read()) is not None and line.strip().casefold() not in _NO:
             if line.strip().casefold() == "begin":
                 return True
-            self._write(text.begin_or_end(line.strip()))
+            if self._stops(line):
+                self._stop()
+            else:
+                self._write(text.begin_or_end(line.strip()))
         return False
+
+    def _stops(self, line: str) -> bool:
+        """Return whether a line is a STOP."""
+        try:
+            return isinstance(self._command(line), StopRobot)
+        except TangyError:
+            return False
+
+    def _stop(self) -> None:
+        """Stop the robot; beginning the game releases it."""
+        if self.setup.world is not None:
+            self.setup.world.link.stop(STOPPED)
+        self._write(text.lines_stopped())
 
     def _find(self, wanted: str) -> str:
         return self.setup.workspace.find_person(wanted).id

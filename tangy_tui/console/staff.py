@@ -76,6 +76,7 @@ class StaffLines:
         demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
         yes: TypedYes | None = None,
         before: StaffLines | None = None,
+        ahead: ReadAhead | None = None,
         watch: FreezeWatch | None = None,
     ) -> None:
         """Connect staff to games.
@@ -90,7 +91,8 @@ class StaffLines:
             also: is called with all events, and returns further lines to write.
             demonstrations: returns all demonstrations, to explain decisions.
             yes: parses a typed yes.
-            before: the games that a person has joined, whose lines are still being read.
+            before: the games that a person has joined.
+            ahead: the lines, if they are being read already; then `read` is not called.
             watch: detects that the program was frozen.
         """
         self._controller, self._name = controller, name
@@ -106,7 +108,7 @@ class StaffLines:
         self._inquiries = Inquiries(controller, name, demonstrations)
         self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, telling.write)
         telling.verify = lambda said: self._questions.verify(said, self._typed)
-        self._ahead: ReadAhead = ReadAhead(read) if before is None else before._ahead
+        self._ahead = ReadAhead(read) if ahead is None else ahead
         self._by_turns = self._leaves = False  # leaves: while no game could begin
         self.played = 0
         self._begun = threading.Event()
@@ -182,6 +184,8 @@ class StaffLines:
     def _play(self) -> None:
         """Play one game in its own thread."""
         controller, game = self._controller, self._game
+        if controller.stopped:
+            self._telling.tell([StaffNote("stopped")])
         while not (events := controller.begin()):  # staff stopped the robot between two games
             if self._ahead.ended or self._leaves:
                 self._telling.write(

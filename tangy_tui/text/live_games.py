@@ -20,6 +20,9 @@ GAME_KEPT = "The game is kept: begin a live game to go on with it."
 TRY_AGAIN = "Switch Tangy on again, and go on with the game?"
 KEEPS_IF_OFF = "If you leave it off, the game is kept: begin a live game to go on with it."
 STOPPED_MEANWHILE = "You stopped it. After you switch it on, it stands until you let it go on."
+STOPPED_BEFORE = "Tangy was stopped: it stands still until you let it go on."
+WAITS_UNTIL_ON = "Tangy is still being switched on. It does that when it is on."
+ON_FIRST = "Tangy is still being switched on, and stands still. Type that again when it is on."
 READY, NOW = "Ready: {}.", "Starting now: {} ..."
 PARTS = {
     "bench": "simulated devices and people",

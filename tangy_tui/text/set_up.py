@@ -291,6 +291,11 @@ def lines_anyway(not_ready: Sequence[Check]) -> str:
     return f"Not ready: {names}. Type begin to begin anyway, or end."
 
 
+def lines_stopped() -> str:
+    """Tell that the robot was stopped before the game, and how to begin or leave."""
+    return f"{STOPPED} Type begin, or end."
+
+
 def begin_or_end(typed: str) -> str:
     """Ask again after a line that is neither."""
     return plain(f"I do not know '{typed[:60]}' here. Type begin to begin anyway, or end.")

@@ -67,7 +67,7 @@ def time_words(
 
 def time_is_up_words(minutes: int) -> str:
     """Tell that the planned time of a game is over."""
-    return f"Time is up: you planned {minutes} minutes. The game goes on; end stops it."
+    return f"Time is up: you planned {minutes} minutes. The game goes on. Type end to end it."
 
 
 def time_facts(seconds: float, minutes: int, paused: float | None, now: datetime | None) -> Fact:

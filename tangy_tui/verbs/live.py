@@ -241,26 +241,44 @@ def live(
         from tangy_tui.verbs.live_lines import LiveLines
 
         console: LiveLines | None = None
+        if plain_lines:
+            typed = stack.enter_context(typed_lines(common.print_line))
+            by_name = who if teacher is not None else on_duty(workspace.store.folder)
+            console = LiveLines(workspace, games, by_name, typed)
+
+        def note(words: str) -> None:
+            if console is not None and console.typed:
+                console.write(plain(words))  # above the line that is being typed
+            else:
+                print(plain(words), file=sys.stderr)
 
         def tell(part: str) -> None:
             if plain_lines:
-                print(plain(f"  {part_words(part, workspace.robot)} ..."), file=sys.stderr)
+                note(f"  {part_words(part, workspace.robot)} ...")
 
         def tell_screen(world: LiveWorld) -> None:
             if world.link.screen:
-                print(plain(screen_words(world.link.screen, world.link.code)), file=sys.stderr)
+                note(screen_words(world.link.screen, world.link.code))
+
+        def meanwhile() -> None:
+            if console is not None:
+                console.meanwhile()
 
         stepped = bench and not plain_lines and link is None  # a delay takes real time
-        with switched_on(begun, stepped=stepped, tell=tell) as there:
+        with switched_on(begun, stepped=stepped, tell=tell, meanwhile=meanwhile) as there:
             if not as_json and (plain_lines or not bench):
                 tell_screen(there)
             told_missing = missing_words(workspace.robot, workspace.activity)
             for told in [] if as_json or lines is not None else told_missing:
-                print(plain(told), file=sys.stderr)  # the set-up has told it in console mode
+                note(told)  # the set-up has told it in console mode
             asks = plain_lines or who == SCRIPTED
-            if lines is not None:
+            if console is not None and console.early.leaves:
+                return
+            if lines is not None and console is not None:
                 lines.setup.world = there
-                if not lines.begins_anyway():
+                stopped, console.early.stopped = console.early.stopped, False
+                lines.use(console.read, console.write)
+                if not lines.begins_anyway(stopped=stopped):
                     return
                 lines.setup.carry_out(there)
             # Only people who are there can rehearse a call: a batch of games must not page anybody.
@@ -268,16 +286,13 @@ def live(
             supervision = workspace.supervision(
                 learnt, number, asks=asks, world=there, rehearsal=rehearsal
             )
-            if plain_lines:
-                typed = stack.enter_context(typed_lines(common.print_line))
-                who = who if teacher is not None else on_duty(workspace.store.folder)
-                console = LiveLines(workspace, games, who, typed)
+            if console is not None:
                 to_their_end = console.play(supervision, there, past)
             else:
                 played = LiveGames(workspace, supervision, past)
                 to_their_end = _play(workspace, played, games, as_json, expert=bool(expert))
         while console is not None and console.joined:
-            again = switched_on(at_front(begun), stepped=stepped, tell=tell)
+            again = switched_on(at_front(begun), stepped=stepped, tell=tell, meanwhile=meanwhile)
             with console.keeping(f"tangy live --resume{common.as_given(data)}"), again as there:
                 tell_screen(there)
                 supervision = workspace.supervision(

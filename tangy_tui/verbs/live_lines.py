@@ -33,12 +33,40 @@ class LiveLines:
             by: who is on duty.
             typed: the lines of a terminal; None: standard input is none.
         """
+        from tangy_tui.app.command_grammar import command_reader
+        from tangy_tui.console.inputs import ReadAhead, line_reader
+        from tangy_tui.console.switching_on import SwitchingOnLines
+
         self._workspace, self._by, self._typed = workspace, by, typed
         self._write = print_line if typed is None else typed.write
         self._left = games
+        self._ahead = ReadAhead(line_reader(None) if typed is None else typed.read)
+        if typed is not None:
+            self._ahead.begin()
+        command = command_reader(workspace.activity, lambda who: workspace.find_person(who).id)
+        self.early = SwitchingOnLines(self._ahead, command, workspace.name, self._write)
+        """The lines that come while the robot is switched on."""
         self._control: GameController | None = None
         self._lines: StaffLines | None = None
         self._world: LiveWorld | None = None
+
+    def read(self) -> str | None:
+        """Return the next line; None at the end."""
+        return self._ahead.lines.get()
+
+    @property
+    def typed(self) -> bool:
+        """Whether a person types the lines."""
+        return self._typed is not None
+
+    def write(self, line: str) -> None:
+        """Write a line."""
+        self._write(line)
+
+    def meanwhile(self) -> None:
+        """Take lines while the robot is switched on; those of a file wait for the first game."""
+        if self._typed is not None or self._control is not None:
+            self.early.take(self._control)
 
     @property
     def joined(self) -> bool:
@@ -84,6 +112,7 @@ class LiveLines:
             world: the robot's world, switched on.
             past: an interrupted game to resume first.
         """
+        from tangy_tui.app.game_commands import StopRobot
         from tangy_tui.app.joining import Admission, carry_over, resume_joined
         from tangy_tui.verbs.playing import staff_lines
 
@@ -99,9 +128,13 @@ class LiveLines:
             past=past,
             typed=self._typed,
             before=self._lines,
+            ahead=self._ahead,
         )
         if before is not None:
             control.follow(before)
+        elif self.early.stopped:
+            control.apply(StopRobot())
+        self.early.stopped = False
         control.admission = Admission(self._workspace, world)
         self._control, self._lines, self._world = control, lines, world
         fine = lines.run(self._left)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tangy_sim.worlds.injection import Injection
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.workspace import Workspace
+    from tangy_tui.console.inputs import ReadAhead
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.console.typed_lines import TypedLines
     from tangy_tui.learning.policy import Policy
@@ -191,6 +192,7 @@ def staff_lines(
     past: PastGame | None = None,
     typed: TypedLines | None = None,
     before: StaffLines | None = None,
+    ahead: ReadAhead | None = None,
 ) -> tuple[GameController, StaffLines]:
     """Return the controller of games, and what connects it to staff at the lines.
 
@@ -202,7 +204,8 @@ def staff_lines(
         speed: a ratio to real time, for simulated games.
         past: an interrupted game to resume first.
         typed: the lines of a terminal.
-        before: the games that a person has joined, whose lines are still being read.
+        before: the games that a person has joined.
+        ahead: the lines, if they are being read already.
     """
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
@@ -244,4 +247,5 @@ def staff_lines(
         demonstrations=shown,
         yes=yes,
         before=before,
+        ahead=ahead,
     )
