@@ -12,7 +12,7 @@ from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
-from tangy_tui.app.robot_controls import ENDED, RobotControls
+from tangy_tui.app.robot_controls import ENDED, PROGRAM_ENDS, RobotControls
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 LEAVES_SECONDS = 1.0  # in which the current behaviour is aborted
@@ -43,10 +43,17 @@ class EndingGames:
             return True
         return False
 
-    def break_off(self) -> None:
-        """Abort the robot's current behaviour, because the game ends."""
+    def break_off(self, why: str = ENDED) -> None:
+        """Abort the robot's current behaviour, because the game or the program ends."""
         self.supervision.stopped_by_staff()
-        self.robot.stop(ENDED)
+        self.robot.stop(why)
+
+    def interrupt(self, patience: float = LEAVES_SECONDS) -> None:
+        """Stop the robot, wait up to `patience` s for it, and leave the game to be resumed."""
+        self.stopped = True
+        self.break_off(PROGRAM_ENDS)
+        if self.wait_for_turn(patience):
+            self.supervision.interrupt()
 
     def _end(self) -> list[Result]:
         self.note("ended")

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.staff_card_reports import StaffCardReports
 
 STOPPED, ENDED = "staff stopped it", "staff ended the game"
+PROGRAM_ENDS = "the program ends"
 UNCLEAR, UNCLEAR_SURE = "?", 0.5
 """The suffix of an answer that staff did not understand clearly, and its probability."""
 DRIVE_AGAIN = 0.1  # s between two velocity commands: without them the robot stops

@@ -13,6 +13,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import TypeAlias
 
 from tangy_profiles.demonstration import Demonstration
@@ -52,6 +53,7 @@ from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
 from tangy_tui.text.calls import expert_line
 from tangy_tui.text.games import belief_lines
+from tangy_tui.text.interruptions import GOES_ON_LATER
 from tangy_tui.text.questions import ANSWER_HELP
 from tangy_tui.text.situations import Name
 
@@ -132,7 +134,11 @@ class StaffLines:
                 self._take_lines(playing)
                 playing.join()
             except BaseException:  # the program is ending
-                self._controller.abandon()
+                goes_on = self._game.game.steps > 0 and not self._game.over
+                self._controller.interrupt()
+                if goes_on:
+                    with suppress(OSError):  # the terminal may be gone
+                        self._telling.write(GOES_ON_LATER)
                 raise
             if self._controller.joined:
                 break

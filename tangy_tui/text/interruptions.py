@@ -18,6 +18,7 @@ END = ("end", "end it", "with a report of it")
 DISCARD = ("discard", "discard it", "and play a new game")
 ENDED = "It was interrupted, and ended afterwards."
 """The logged reason for the end of such a game."""
+GOES_ON_LATER = "The game is not over: start Tangy again to go on with it."
 NONE = "No game was interrupted: there is nothing to go on with. Leave --resume out."
 BOTH = "Use either --resume or --discard."
 
@@ -30,6 +31,11 @@ def interrupted_words(past: PastGame, calls: int) -> str:
 def still_open_words(past: PastGame, calls: int) -> str:
     """Tell in the note on a choice that a game was interrupted, and can be resumed."""
     return f"interrupted after {_far(past, calls)}: Enter asks whether to go on"
+
+
+def to_be_resumed_words(past: PastGame, calls: int) -> str:
+    """Tell, once the program has ended, that its game can be resumed."""
+    return f"The game is not over, after {_far(past, calls)}: start Tangy again to go on with it."
 
 
 def _far(past: PastGame, calls: int) -> str:

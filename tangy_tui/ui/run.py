@@ -9,12 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.game_rules import USUAL_PACE
+from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
+from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.teacher_profile import change_theme, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.games import read_games
+from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.live_games import played_lines
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
@@ -104,7 +107,8 @@ def run_playing(
     which then count as the robot's cameras; otherwise it is faster. Answers to Tangy's questions
     may be spoken if there are `ears`.
     """
-    return _run(
+    begun = datetime.now(UTC)
+    status = _run(
         workspace,
         lambda program: program.play(games, speed, seed, policy, teacher, injections, past),
         ascii_only,
@@ -113,6 +117,8 @@ def run_playing(
         sensors=sensors,
         live=sensors is not None,
     )
+    _tell_interrupted(workspace, SIMULATED, begun)
+    return status
 
 
 def run_live(
@@ -172,7 +178,15 @@ def run_live(
     status = _run(workspace, start, ascii_only, ears)
     for line in played_lines(read_games(workspace.store), begun, report):
         print(plain(line))
+    _tell_interrupted(workspace, world, begun)
     return status
+
+
+def _tell_interrupted(workspace: Workspace, world: GameWorld, begun: datetime) -> None:
+    """Tell that a game that was played since a time is not over, and can be resumed."""
+    past = find_interrupted(workspace, world)
+    if past is not None and past.at >= begun:
+        print(plain(to_be_resumed_words(past, len(past.called(workspace.activity)))))
 
 
 def run_drill(

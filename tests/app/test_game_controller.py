@@ -11,6 +11,7 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.staff_records import StaffAction
@@ -240,6 +241,15 @@ def test_an_ended_game_accepts_no_commands(live: Played) -> None:
     assert live.link.told[-1] == "stop: staff ended the game"
     assert kinds(live.control.apply(OneStep())) == ["no game"] and live.next() == []
     assert live.control.begin() and live.link.told[-1] == "release"
+
+
+def test_an_interrupted_game_stops_the_robot_and_can_be_resumed(live: Played) -> None:
+    live.next()
+    live.control.interrupt()
+    assert live.link.told[-1] == "stop: the program ends"
+    assert live.next() == [] and not list(live.workspace.store.events("game ended"))
+    past = interrupted_game(live.workspace.store, live.workspace.activity.name)
+    assert past is not None and len(past.steps) == 1
 
 
 def test_abandoning_a_game_logs_its_end_and_stops_the_robot(live: Played) -> None:

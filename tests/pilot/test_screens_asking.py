@@ -13,6 +13,8 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import GameEnding
+from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
@@ -387,15 +389,15 @@ async def test_a_failed_write_to_the_log_pauses_the_game_until_a_retry(
 
 
 @pytest.mark.slow
-async def test_quitting_at_a_question_ends_the_game_in_the_log(
+async def test_a_game_can_be_resumed_after_quitting_at_a_question(
     run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     async with run(app=playing(workspace, gappy)) as pilot:
         await asked(pilot)
         await pilot.press("ctrl+q")
-    ended = workspace.store.last(GameEnding)
-    assert ended is not None
-    assert ended.body["stopped"] == "It was left before its end."
+    assert workspace.store.last(GameEnding) is None
+    assert interrupted_game(workspace.store, workspace.activity.name) is not None
+    assert not [act for act in workspace.store.events(StaffAction) if act.record.did == "stopped"]
 
 
 @pytest.mark.slow

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tangy_profiles.game_records import GameEnding
+from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import OVER, read_faults
@@ -242,15 +245,15 @@ async def test_a_critical_fault_opens_over_the_help(
 
 
 @pytest.mark.slow
-async def test_quitting_while_halted_ends_the_game_in_the_log(
+async def test_a_game_can_be_resumed_after_quitting_while_halted(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
         await halting(pilot)
         await pilot.press("ctrl+q")
-    ended = workspace.store.last("game ended")
-    assert ended is not None
-    assert ended.body["stopped"] == "It was left before its end."
+    assert workspace.store.last(GameEnding) is None
+    assert interrupted_game(workspace.store, workspace.activity.name) is not None
+    assert not [act for act in workspace.store.events(StaffAction) if act.record.did == "stopped"]
 
 
 @pytest.mark.slow

@@ -8,11 +8,15 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from time import sleep
 
 import pytest
+
+from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.store import Store
+from tangy_tui.text.interruptions import GOES_ON_LATER
 
 TANGY = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
 
@@ -134,3 +138,28 @@ def test_ctrl_c_ends_a_session_by_lines_and_keeps_its_steps(tmp_path: Path) -> N
             taught.kill()
     again = tangy("teach", "--plain", *data, home=tmp_path)
     assert b"demonstration of 1 step " in again.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_game_by_lines_can_be_resumed_after_a_signal(
+    number: signal.Signals, tmp_path: Path
+) -> None:
+    data = ("--data", str(tmp_path))
+    for verb in (["teach", "--teacher", "scripted", "--games", "1"], ["learn"]):
+        assert tangy(*verb, *data, home=tmp_path).returncode == 0
+    with subprocess.Popen(  # noqa: S603 - our own interpreter
+        [*TANGY, "play", "--plain", "--speed", "50", *data],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+    ) as played:  # fmt: skip
+        assert played.stdout is not None
+        for line in played.stdout:
+            if line.startswith(b"3. "):
+                break
+        played.send_signal(number)
+        said = played.stdout.read()
+    assert played.returncode != 0
+    if number == signal.SIGINT:
+        assert GOES_ON_LATER.encode() in said
+    with closing(Store.open(tmp_path)) as store:
+        assert interrupted_game(store, "bingo") is not None

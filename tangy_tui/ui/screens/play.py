@@ -184,7 +184,8 @@ class PlayScreen(PlayStaff):
             self.control.note("ended")
             self.control.end_joined(ENDED)
             await self._come_to_rest()
-            self._end_game()
+            if not self._supervision.over:
+                self.tally.add(self.control.abandon())
             self.leave(self.tally)
         elif going and not self.control.stopped and not self._halted:
             self._do(GoOn())
@@ -192,21 +193,20 @@ class PlayScreen(PlayStaff):
     async def _come_to_rest(self) -> None:
         """Let the current behaviour end first."""
 
-    def _end_game(self) -> None:
-        """Log that the game was left."""
-        if not self._supervision.over:
-            self.tally.add(self.control.abandon())
-
     def on_unmount(self) -> None:
-        """End the game when the screen is closed."""
+        """Leave a game that nobody ended to be resumed."""
         self.control.changed = lambda: None
         if not self.control.joined:  # an onlooker may stop the robot while it is switched on again
             self._workspace.door.detach(self.control)
-        self._end_game()
+        if not self._supervision.over:
+            self.control.interrupt()
         self._voice.hush()
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: no further behaviour runs until staff continue."""
+        if getattr(self.app, "leaving", False):
+            self.control.break_off(message.reason)  # nobody pressed STOP
+            return
         self.control.apply(StopRobot())  # before drawing
         self._show_stopped()
 

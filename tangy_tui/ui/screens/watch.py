@@ -22,6 +22,7 @@ from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted, Un
 from tangy_tui.text import watching as text
 from tangy_tui.text.endings import ending_words
 from tangy_tui.text.fault_views import WAITS
+from tangy_tui.text.interruptions import GOES_ON_LATER
 from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
@@ -119,7 +120,7 @@ class WatchScreen(TangyScreen[None]):
             over = self._view is None or self._log.over
             self.query_one(LogView).write(text.GONE, "warn")
             if not over:
-                self.query_one(LogView).write(text.GOES_ON_LATER, "warn")
+                self.query_one(LogView).write(GOES_ON_LATER, "warn")
         if self._guest.stops > stops:
             self.query_one(LogView).write(text.STOPPED_HERE, "bad")
         if self._there and self._guest.pid and self._guest.view is None and not self._told_none:
