@@ -10,7 +10,7 @@ from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.situation_words import seen_words
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.state import EVERYBODY, ActivityState
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -106,7 +106,12 @@ def whom_words(activity: Activity, policy: Policy) -> list[str]:
 
 def stage_words(activity: Activity | None, stage: str) -> str:
     """Return the words for a stage, or its name if the activity's file has none."""
-    return activity.stage_words(stage) if isinstance(activity, DeclaredActivity) else stage
+    if isinstance(activity, DeclaredActivity):
+        return activity.stage_words(stage)
+    rules = () if activity is None else activity.stage_rules
+    own = [rule.label for rule in rules if rule.stage == stage]
+    labels = [words for request in ("AR", "ANR") for one in own if (words := one.get(request))]
+    return listed(dict.fromkeys(labels), "or") or stage
 
 
 def selector_words(selector: str) -> str:

@@ -16,7 +16,10 @@ from tangy_tui.monitoring.attention import Attention, visiting
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.people_progress import people_progress
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
+from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.pages.session import session_page
+from tangy_tui.text.activities import stage_words
 from tangy_tui.text.endings import all_endings, ending_sentence
 from tangy_tui.text.games import belief_lines
 from tangy_tui.text.report import (
@@ -26,7 +29,7 @@ from tangy_tui.text.report import (
     visiting_words,
     waited_words,
 )
-from tangy_tui.text.results import progress_line
+from tangy_tui.text.results import BY_METHOD, progress_line
 from tests.monitoring.conftest import Supervise
 from tests.support.games import play
 
@@ -137,3 +140,17 @@ def test_what_works_is_told_only_where_tangy_asks_people_for_something() -> None
 
     assert belief_lines(played("trivia"), str) == []
     assert len(belief_lines(played("bingo"), str)) == 1
+
+
+def test_the_page_tells_each_method_and_names_stages_in_words(
+    workspace: Workspace, replays: list[GameReplay]
+) -> None:
+    store, activities = workspace.store, {workspace.activity.name: workspace.activity}
+    session = read_session(store, read_games(store), activities, workspace.names)
+    people = people_progress(store, replays, workspace.names)
+    page = session_page(replace(session, replays=tuple(replays), people=people))
+    assert BY_METHOD in page and ", Raffle</h3>" in page and ", Bingo</h3>" in page
+    assert BY_METHOD not in session_page(session)
+    activity = replays[0].activity
+    assert stage_words(activity, "navigate").startswith("somebody asks for help")
+    assert stage_words(activity, "facilitate") in page
