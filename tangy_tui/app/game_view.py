@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.codec import Count, Sparse
 from tangy_profiles.game_world import GameWorld
+from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.scene import Scene
-from tangy_tui.app.game_commands import Phase
+from tangy_tui.app.game_commands import Autonomy, Phase
+from tangy_tui.app.readiness import battery_of
 from tangy_tui.app.staff_view import PersonNow
 
 if TYPE_CHECKING:
@@ -45,6 +47,13 @@ class GameView:
     """How long the pause has lasted, in s, rounded down; null: the game is not paused."""
     people: Sparse[tuple[PersonNow, ...]] = ()
     """The state of each person, with times in whole s."""
+    autonomy: Sparse[Autonomy] = "alone"
+    pace: Sparse[float] = 0.0
+    """The time between two calls in s; 0: nothing is called."""
+    patterns: Sparse[tuple[str, ...]] = ()
+    """The labels of the pattern that is played for, and of those that follow."""
+    battery: Sparse[float | None] = None
+    """The share of the robot's charge, 0 to 1, rounded; null: no device tells it."""
 
 
 def view_of(control: GameController) -> GameView | None:
@@ -75,8 +84,19 @@ def view_of(control: GameController) -> GameView | None:
             paused=None if seen.paused is None else int(seen.paused),
             minutes=supervision.game.changes.plan.minutes,
             people=tuple(_in_whole_seconds(person) for person in seen.people),
+            autonomy=control.autonomy.level,
+            pace=seen.pace,
+            patterns=_patterns(world),
+            battery=None if (charge := battery_of(world)) is None else round(charge, 2),
         )
     return None
+
+
+def _patterns(world: object) -> tuple[str, ...]:
+    patterns = world.patterns if isinstance(world, PlannedGame) else None
+    if patterns is None or patterns.present is None:
+        return ()
+    return tuple(one.label for one in (patterns.present, *patterns.left))
 
 
 def _in_whole_seconds(person: PersonNow) -> PersonNow:

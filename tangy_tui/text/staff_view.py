@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from typing import TypeAlias, assert_never
 
@@ -89,7 +89,12 @@ def played_words(patterns: Patterns | None) -> str:
     """Name the pattern to play for, and those that follow."""
     if patterns is None or patterns.present is None:
         return ""
-    return "for " + ", then ".join(one.label for one in (patterns.present, *patterns.left))
+    return labels_words([one.label for one in (patterns.present, *patterns.left)])
+
+
+def labels_words(labels: Sequence[str]) -> str:
+    """Name the pattern to play for, and those that follow, by their labels."""
+    return f"for {', then '.join(labels)}" if labels else ""
 
 
 def tangy_words(level: Autonomy, battery: float | None) -> str:

@@ -10,7 +10,14 @@ from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.faults import status_words
 from tangy_tui.text.situations import OVER_NOW, Name
-from tangy_tui.text.staff_view import Fact, lasting_words, time_facts, time_words
+from tangy_tui.text.staff_view import (
+    Fact,
+    labels_words,
+    lasting_words,
+    tangy_words,
+    time_facts,
+    time_words,
+)
 from tangy_tui.text.times import local_now
 
 WORLDS: dict[GameWorld, str] = {
@@ -131,11 +138,12 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
 
 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
-    """Describe the time, who waits for help, and the calls."""
+    """Describe the time, who waits for help, the calls, and what staff have chosen."""
     waits, called = waiting_words(view, name), called_words(view, activity)
     time = time_words(view.seconds, view.minutes, view.paused, _now(view))
     told = f"{time}{f'. {waits}' if waits else ''}."
-    return [told, called] if called else [told]
+    chosen = ", ".join(filter(None, reversed(_chosen(view))))
+    return [*filter(None, (told, called)), f"{chosen}."]
 
 
 def _now(view: GameView) -> datetime | None:
@@ -149,4 +157,11 @@ def facts(view: GameView) -> list[Fact]:
     return [
         time_facts(view.seconds, view.minutes, view.paused, _now(view)),
         f"{called} called" if called else "",
+        *_chosen(view),
     ]
+
+
+def _chosen(view: GameView) -> list[str]:
+    """Tell what staff have chosen: the pace, the patterns, and how much Tangy does by itself."""
+    pace = f"a call every {view.pace:g} s" if view.pace else ""
+    return [pace, labels_words(view.patterns), tangy_words(view.autonomy, view.battery)]

@@ -10,7 +10,16 @@ import pytest
 
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
-from tangy_tui.app.game_commands import EndGame, GameCommand, Pause, Phase, TakeOver
+from tangy_tui.app.game_commands import (
+    ChoosePatterns,
+    EndGame,
+    GameCommand,
+    Pause,
+    Phase,
+    SetAutonomy,
+    SetPace,
+    TakeOver,
+)
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.joining import let_join
@@ -18,6 +27,7 @@ from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.control import autonomy_words
 from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
 from tangy_tui.text.watching import NO_GAME, PHASES, WORLDS, robot_words
@@ -127,6 +137,21 @@ async def test_the_status_line_tells_why_tangy_does_nothing(
         assert (status.status.stage, status.status.robot) == (STAGES[phase], "OK")
         assert STAGES[phase] in pilot.text()
         assert WORLDS[control.supervision.world.played_in] in pilot.text()  # it is not cut
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE])
+async def test_the_screen_shows_what_staff_have_chosen(
+    control: GameController, screen: WatchScreen, run: Run, size: tuple[int, int]
+) -> None:
+    control.apply(SetAutonomy("each"))
+    control.apply(SetPace(25))
+    control.apply(ChoosePatterns(("two lines",)))
+    async with run(screen, size=size) as pilot:
+        await until(lambda: screen.query(RoomView))
+        await pilot.pause()
+        told = " ".join(pilot.text().split())
+        assert autonomy_words("each") in told and "25 s" in told
+        assert control.supervision.world.activity.rules.pattern("two lines").label in told
 
 
 def test_a_stop_does_not_hide_a_fault_that_halts_the_robot(control: GameController) -> None:
