@@ -1,8 +1,9 @@
 """Training sentences for the intent model, made from an activity's own words.
 
 Templates (`asking.toml`) are filled with each behaviour's phrases, question and name; negative
-examples are talk with the same words. A person or seat is one token, so the model does not depend
-on the participants.
+examples are talk with the same words. What many activities have (a greeting, a hint, the scores) is
+learnt from `common_requests.toml` as well. A person or seat is one token, so the model does not
+depend on the participants.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ ARTICLES = frozenset(("a", "an", "the", "any", "next", "another"))
 MADE = ARTICLES - {"the"}  # before a new thing, not an existing one
 EVERY = 3  # each phrase is used with one in this many templates
 PEOPLE = 2  # a sentence is spoken with so many people
-WORDED = 10  # each other wording is used with one in this many templates of talk
+WORDED = 6  # each other wording is used with one in this many templates of talk
 
 
 class Example(NamedTuple):
@@ -38,14 +39,33 @@ class Example(NamedTuple):
 @cache
 def templates() -> Mapping[str, Any]:
     """Return the templates of requests and talk."""
-    content = files("tangy_tui.language").joinpath("asking.toml").read_text(encoding="utf-8")
-    return tomllib.loads(content)
+    return _read("asking.toml")
+
+
+@cache
+def common_requests() -> Sequence[Mapping[str, Sequence[str]]]:
+    """Return requests that many activities share: `asks`, `talk`, and the texts they are `of`."""
+    return tuple(_read("common_requests.toml")["common"])
+
+
+def wordings_of(behaviour: Behaviour) -> tuple[str, ...]:
+    """Return other wordings of a behaviour: the activity's own, then common ones."""
+    them = cycle(templates()["people_said"])
+    common = (
+        _fill(form, them=who["them"], sub=who["sub"], their=who["their"])
+        for form, who in zip(_common(behaviour).get("asks", ()), them, strict=False)
+    )
+    return tuple(dict.fromkeys((*behaviour.wordings, *common)))
 
 
 def examples_of(activity: Activity) -> tuple[Example, ...]:
     """Return the training sentences of an activity, without duplicates, in a fixed order."""
     found: dict[Words, str] = {}
-    for behaviour in activity.behaviours.values():
+    behaviours = activity.behaviours.values()
+    for behaviour in behaviours:  # first, as no common request may take them
+        for text in (*own_phrases(behaviour), *behaviour.wordings):
+            found.setdefault(_words(text), behaviour.name)
+    for behaviour in behaviours:
         for text in _asking(behaviour, activity):
             found.setdefault(_words(text), behaviour.name)
     for text in _talk(activity):
@@ -69,7 +89,7 @@ def _asking(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
     for place, phrase in enumerate(own):
         for form in known["asking"][place % EVERY :: EVERY]:
             yield _fill(form, do=phrase, doing=_doing(phrase))
-    for text in behaviour.wordings:
+    for text in wordings_of(behaviour):
         for form in known["wordings"]:
             yield _fill(form, do=text)
     for thing in _things(behaviour, MADE):
@@ -112,11 +132,13 @@ def _talk(activity: Activity) -> Iterator[str]:
     yield from talk["other"]
     for behaviour in activity.behaviours.values():
         phrases = tuple(map(_without_asking, own_phrases(behaviour)))
+        wordings = wordings_of(behaviour)
         things = _things(behaviour, ARTICLES)
+        yield from _common(behaviour).get("talk", ())
         for place, form in enumerate(talk["about"]):
             if "{do" in form or "{did}" in form:
                 some = phrases[place % EVERY :: EVERY]
-                some += behaviour.wordings[place % WORDED :: WORDED]
+                some += wordings[place % WORDED :: WORDED]
                 for phrase in some:
                     yield _fill(form, do=phrase, doing=_doing(phrase), did=_did(phrase))
             elif "{thing}" in form:
@@ -125,6 +147,15 @@ def _talk(activity: Activity) -> Iterator[str]:
                 yield form.replace("{who}", SOMEBODY)
             else:
                 yield form.replace("{object}", activity.object)
+
+
+def _common(behaviour: Behaviour) -> Mapping[str, Sequence[str]]:
+    """Return the first common request whose words are in a text of a behaviour."""
+    own = [set(words_of(phrase)) for phrase in own_phrases(behaviour)]
+    for known in common_requests():
+        if any(text.issuperset(words_of(key)) for key in known["of"] for text in own):
+            return known
+    return {}
 
 
 def own_phrases(behaviour: Behaviour) -> tuple[str, ...]:
@@ -173,6 +204,11 @@ def _did(phrase: str) -> str:
     verb, _, rest = phrase.partition(" ")
     told = templates()["past"].get(verb, verb + ("d" if verb.endswith("e") else "ed"))
     return f"{told} {rest}".strip()
+
+
+def _read(name: str) -> Mapping[str, Any]:
+    content = files("tangy_tui.language").joinpath(name).read_text(encoding="utf-8")
+    return tomllib.loads(content)
 
 
 def _fill(form: str, **parts: str) -> str:

@@ -14,10 +14,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from tangy_profiles.activity import Activity
-from tangy_tui.language.examples import examples_of, templates
+from tangy_tui.language.examples import common_requests, examples_of, templates
 from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_model
 
-VERSION = 4
+VERSION = 5
 """Incremented when examples, features or the fit change, to invalidate stored models."""
 SHIPPED = Path(__file__).parent / "learnt"
 MOST = 32
@@ -90,5 +90,5 @@ def digest_of(activity: Activity) -> str:
         (b.name, b.phrases, b.wordings, b.question, b.effect, b.persuades)
         for b in activity.behaviours.values()
     ]
-    made_of = json.dumps([VERSION, templates(), activity.object, own])
+    made_of = json.dumps([VERSION, templates(), common_requests(), activity.object, own])
     return hashlib.sha256(made_of.encode()).hexdigest()[:32]

@@ -20,7 +20,7 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.person import Person
 from tangy_profiles.state import EVERYBODY
-from tangy_tui.language.examples import spoken_examples, templates
+from tangy_tui.language.examples import spoken_examples, templates, wordings_of
 from tangy_tui.language.words import Words, bare, clean, spoken, words_of
 
 ARTICLES = frozenset(("a", "an", "the"))
@@ -71,7 +71,7 @@ class Phrases:
         self.questions = tuple(spoken(words_of(b.question)) for b in activity.behaviours.values())
         """The questions about the behaviours, as they are spoken."""
         self.wordings = tuple(
-            spoken(words_of(text)) for b in activity.behaviours.values() for text in b.wordings
+            spoken(words_of(text)) for b in activity.behaviours.values() for text in wordings_of(b)
         )
         """Other wordings of the behaviours, as they are spoken."""
         self.answers = _answers_in(activity)

@@ -158,6 +158,7 @@ CALL = _any(
     "emergency|(?:this is|its) an emergency|then|also|yes|do|stop|halt|end (?:it|this)|kindly",
     "(?:go|get|keep|stay|move) (?:away|off|back)|back off|leave (?:me|us|her|him|them|it) alone",
     "(?:i am|im|we are|were) begging you|i beg (?:of )?you",
+    "everything|cancel",
 )
 _MUST = (
     "must|have to|has to|have got to|has got to|got to|gotta|needs? to|should|ought to|had better"
@@ -174,6 +175,7 @@ ASK = _any(
     rf"(?:make|tell|get|ask) (?:{SOMEBODY})(?: to)?(?= (?:stop|quit) (?:{_DRIVES})\b)",
     f"(?:{_YOU}|youd|wed|id|it|this|that|everything|{GAME}) (?:just |really |all )*(?:{_MUST})",
     "you (?:can|could|will|would|may|might)",
+    "if you (?:can|could|would)(?: (?:please|kindly|just|now))*",
     f"(?:can|could|will|would|shall|should|may|might|cant|couldnt|wont|wouldnt|shouldnt)"
     f" (?:{_YOU}|it)(?: (?:please|kindly|just|now|possibly|perhaps))*",
     f"(?:im|i am|were|we are) (?:just |really |now )*(?:{_ASKING}) (?:{ITSELF}|you) to",

@@ -146,6 +146,8 @@ def understand(
     if phrasebook.learns and not learnt and confidence < NO_TALK:
         return Say(text, min(confidence, UNSURE), ())
     least = SURE
+    if phrasebook.learns and near and not _supports(learnt, near[0]):
+        least = NO_TALK
     if learnt and learnt[0].confidence >= min(SURE_OF_PARAPHRASE, confidence):
         near, learnt, confidence = learnt, near, learnt[0].confidence
         text, least = guesses[0], SURE_OF_PARAPHRASE
@@ -154,6 +156,11 @@ def understand(
     named = {c.behaviour: c for c in (*reversed(learnt), *reversed(near))}
     rest = [c for c in (*near, *learnt) if c is named[c.behaviour]]
     return _said(text, confidence, rest[:MOST_ALTERNATIVES], least)
+
+
+def _supports(learnt: Sequence[Command], near: Command) -> bool:
+    """Return whether the intent model, too, finds the command of a near phrase likely."""
+    return any(c.behaviour == near.behaviour and c.confidence >= AGREED for c in learnt[:1])
 
 
 def _stops(text: str, evidence: AcousticEvidence, game: Collection[str] = ()) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import load_room
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.examples import SOMEBODY, examples_of
+from tangy_tui.language.examples import SOMEBODY, Example, examples_of
 from tangy_tui.language.intent_model import IntentModel, UnreadableModel, read_model
 from tangy_tui.language.intents import SHIPPED, Intents, digest_of
 from tangy_tui.language.mentions import Mentions
@@ -96,6 +97,31 @@ def test_the_intent_model_changes_no_phrase() -> None:
     plain = Phrasebook(BINGO, PEOPLE)
     for phrase in plain.phrases:
         assert BOOK.understand(phrase) == plain.understand(phrase)
+
+
+@pytest.mark.parametrize(
+    ("activity", "text", "behaviour"),
+    [
+        ("trivia", "point her the right way", "give hint"),
+        ("trivia", "read out the points please", "tell scores"),
+        ("trivia", "let them think about it for a while", "allow time"),
+        ("exercises", "would you count out loud", "count aloud"),
+        ("exercises", "show us the next exercise", "show movement"),
+    ],
+)
+def test_common_requests_are_understood_in_each_activity_that_has_them(
+    activity: str, text: str, behaviour: str
+) -> None:
+    found = Phrasebook(load_activity(activity), PEOPLE, Intents().model).understand(text)
+    assert found is not None and found.behaviour == behaviour
+
+
+def test_an_activity_s_own_wording_is_no_common_request_of_another_behaviour() -> None:
+    trivia = load_activity("trivia")
+    own = replace(trivia.behaviours["tell scores"], wordings=("drop a hint",))
+    changed = replace(trivia, behaviours={**trivia.behaviours, "tell scores": own})
+    assert Example(words_of("drop a hint"), "give hint") in examples_of(trivia)
+    assert Example(words_of("drop a hint"), "tell scores") in examples_of(changed)
 
 
 @pytest.mark.slow
@@ -192,6 +218,17 @@ def test_the_model_is_looked_up_once_for_all_guesses_and_sentences() -> None:
     for _ in range(2):
         assert book.paraphrased("would you read out another number", "read a number out")
     assert asked == [activity]
+
+
+@pytest.mark.parametrize(("likely", "sure"), [(0.3, False), (0.7, True)])
+def test_a_near_phrase_is_sure_only_if_the_intent_model_supports_it(
+    likely: float, sure: bool
+) -> None:
+    offsets = (math.log(1 - likely), math.log(likely))
+    book = Phrasebook(BINGO, PEOPLE, lambda _: IntentModel(("", "joke"), offsets, {}))
+    said = understand(clearly_heard("tell another joke about the war"), book, USUAL)
+    assert isinstance(said, Say) and said.commands
+    assert (said.commands[0].behaviour, said.sure) == ("joke", sure)
 
 
 def test_nothing_is_offered_if_the_best_guess_forbids_it() -> None:

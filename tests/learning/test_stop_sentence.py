@@ -63,6 +63,16 @@ def test_most_everyday_commands_stop_and_other_talk_does_not() -> None:
     assert len(stopped["others"]) <= 1 and stopped["talk"] == []
 
 
+def test_stops_after_a_polite_condition_or_an_all_round_order_stop() -> None:
+    assert stops("if you could just stop there") and stops("everything stop please")
+    assert not stops("if you could stop the radio") and not stops("everything stops at noon")
+
+
+def test_the_robot_on_somebody_stops_and_a_thing_to_hold_does_not() -> None:
+    assert stops("it's on my toes") and stops("it is driving over my foot")
+    assert not stops("would you hold this for me") and not stops("i'm out of puff today")
+
+
 def test_taking_an_unnamed_thing_away_is_no_stop() -> None:
     assert not stops("could somebody please take it away")
     assert stops("take it away from me") and stops("take that robot away")
