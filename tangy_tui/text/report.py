@@ -69,13 +69,13 @@ def asked_words(one: Attention) -> str:
 
 
 def waited_words(one: Attention) -> str:
-    """Tell how long a person waited: each of a few waits, or the median and the longest wait."""
-    if one.longest is None or not one.waits:
-        more = f", {NOT_REACHED}" if one.open else ""
-        return f"{length(one.longest)}{more}" if one.longest is not None else "\N{EN DASH}"
+    """Tell how long a person waited: each of a few waits in order, or what half of many took."""
+    if not one.requests:
+        return "\N{EN DASH}"
+    if one.requests <= FEW_WAITS:  # "and" would make one time of two
+        ended = [*map(length, one.waits), *(f"{length(wait)} ({NOT_REACHED})" for wait in one.open)]
+        return ", then ".join(ended)
     more = f"; {often(len(one.open))} {NOT_REACHED}" if one.open else ""
-    if one.requests <= FEW_WAITS:
-        return listed(map(length, [*one.waits, *one.open])) + more
     return usual_words([*one.waits, *one.open]) + more
 
 

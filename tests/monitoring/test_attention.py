@@ -118,9 +118,9 @@ def test_the_summary_lists_winners_and_waits_longest_first() -> None:
     assert attention_lines([ann, bob, cy], str) == [
         "Won: Ann.",
         "Asked for help:",
-        "  Ann twice, waited: 20 s and 7 min; 2 visits, 30 s in all",
-        "  Bob once, waited: 1 min, not reached; never visited",
-        "  Cy twice, waited: 30 s and 2 min; once not reached; 1 visit, 0 s in all",
+        "  Ann twice, waited: 20 s, then 7 min; 2 visits, 30 s in all",
+        "  Bob once, waited: 1 min (not reached); never visited",
+        "  Cy twice, waited: 30 s, then 2 min (not reached); 1 visit, 0 s in all",
     ]
     assert care_lines([bob, ann, cy], str) == [
         "Tangy never went to Bob.",

@@ -123,7 +123,7 @@ def test_a_late_response_is_not_told_as_done_in_time() -> None:
     ("waits", "words"),
     [
         ([30.0], "30 s"),
-        ([10.0, 50.0, 20.0], "10 s, 50 s and 20 s"),
+        ([10.0, 50.0, 20.0], "10 s, then 50 s, then 20 s"),
         ([10.0, 20.0, 40.0, 50.0], "half within 20 s, at most 50 s"),
         ([20.0, 20.0, 20.0, 20.0], "20 s"),
     ],
