@@ -76,6 +76,12 @@ INQUIRIES: dict[str, Inquiry] = {
     **dict.fromkeys(("patterns", "pattern", "which patterns"), "patterns"),
 }
 
+WHOSE_CARDS = ("cards", "card", "whose card", "whose cards", "who has which card")
+"""Questions in a game about whose card is whose."""
+
+WHO_IS_HERE = ("people", "who", "who is here", "who is there", "who waits")
+"""Questions in a game about who is here, and how long they have waited."""
+
 ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
 LONGEST_NUMBER = 4  # digits
 LEAVING = ("quit", "exit", "leave", "leave the game", "go home")
@@ -193,6 +199,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("pace 20", "calls every 20 s; or: faster, slower"),
     ("check 17", "checks card 17 against all calls; check 17 Rosa says whose it is"),
     ("NAME has card 17", "tells Tangy whose card it is, so that a claim names the person"),
+    ("people, cards", "says who is here, with their seats and waits, and whose card is whose"),
     ("play for NAME, NAME", "the patterns to play for next, in order; patterns lists them"),
     ("several winners", "everybody with the pattern at the same call wins; or: one winner"),
     ("visits on", "also visits people who do not ask; or: visits off"),

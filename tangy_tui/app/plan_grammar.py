@@ -83,10 +83,11 @@ def read_planned(
 def _claim(said: str, find_person: Callable[[str], str], rules: GameRules) -> GameCommand | None:
     """Parse a claim: the activity's word for it, a card's number, and perhaps a name."""
     word, _, rest = said.partition(" ")
-    if not rules.claim or not rest or word.casefold() not in (CHECK, rules.claim.casefold()):
+    if not rules.claim or word.casefold() not in (CHECK, rules.claim.casefold()):
         return None
     number, _, person = rest.partition(" ")
     digits = number.strip("#,:")
     if not (digits.isascii() and digits.isdecimal() and len(digits) <= 6):
-        raise TangyError(plain(f"'{rest[:60]}' is no number of a card. Say it as in: {word} 17."))
+        wrong = f"'{rest[:60]}'" if rest else f"'{word}' alone"
+        raise TangyError(plain(f"{wrong} is no number of a card. Say it as in: {word} 17."))
     return ClaimCard(int(digits), find_person(person) if person.strip() else "")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
+from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.text.calls import waits_line
-from tangy_tui.text.changes import patterns_line
+from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, proposal_words
 from tangy_tui.text.faults import HALTED, advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
@@ -19,7 +19,7 @@ from tangy_tui.text.staff_lines import (
     SAY_IN_WORDS,
     nothing_to,
 )
-from tangy_tui.text.staff_view import time_words
+from tangy_tui.text.staff_view import person_words, time_words
 from tangy_tui.text.times import local_now
 
 HELP = "You can type at any time:"
@@ -51,6 +51,11 @@ class Inquiries:
                 return list_lines(self._game.faults)
             case "patterns":
                 return [patterns_line(self._game.world)]
+        if word in WHO_IS_HERE:
+            people = enumerate(self._controller.view().people, 1)
+            return [f"{seat}. {self._name(one.id)}: {person_words(one)}" for seat, one in people]
+        if word in WHOSE_CARDS:
+            return [cards_line(self._game.world, self._name)]
         if word in ANSWERS:
             return [NO_QUESTION]
         if word in ("undo", "redo"):

@@ -61,6 +61,20 @@ def with_words(names: Sequence[str]) -> str:
     return f"paused at first; {listed(names)} joins" if names else RESUME[2]
 
 
+def lines_ask(*, joins: bool) -> str:
+    """Ask in console mode what becomes of a game that was interrupted."""
+    add = " If somebody has come, type first, as in: add Berta." if joins else ""
+    return f"Type: go on, end (with a report), or discard (and play a new game).{add}"
+
+
+KEPT = "The game is kept. You are asked again the next time."
+
+
+def joins_words(name: str) -> str:
+    """Tell that a person joins the interrupted game."""
+    return f"{name} joins. Type: go on."
+
+
 def report_words(path: str) -> str:
     """Tell where the report of an ended game is."""
     return f"The report is in {path}."

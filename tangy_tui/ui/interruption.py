@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.interruption import GameToPlay
 from tangy_tui.text import interruptions as text
 
 if TYPE_CHECKING:
@@ -14,13 +15,6 @@ if TYPE_CHECKING:
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.ui.program import Program
-
-
-@dataclass(frozen=True, slots=True)
-class GameToPlay:
-    """The game to play: an interrupted one to resume, or (None) a new one."""
-
-    past: PastGame | None
 
 
 async def ask_about_interrupted(program: Program, world: GameWorld) -> GameToPlay | None:

@@ -11,6 +11,7 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
+from tangy_tui.app.interruption import GameToPlay
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.text.rooms import no_chosen_room
@@ -19,7 +20,7 @@ from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.drills import hold_drill
 from tangy_tui.ui.first_start import change_teacher, first_start, rename_teacher
-from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
+from tangy_tui.ui.interruption import ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.policy_comparison import compare_policies
 from tangy_tui.ui.screens.home import HomeScreen

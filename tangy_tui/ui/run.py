@@ -12,7 +12,7 @@ from tangy_profiles.game_rules import USUAL_PACE
 from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.app.interruption import find_interrupted
+from tangy_tui.app.interruption import GameToPlay, find_interrupted
 from tangy_tui.app.teacher_profile import change_theme, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
@@ -22,7 +22,7 @@ from tangy_tui.text.live_games import played_lines
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
 from tangy_tui.ui.drills import hold_drill
-from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
+from tangy_tui.ui.interruption import ask_about_interrupted
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program, Start
 from tangy_tui.ui.round_trip import read_replies

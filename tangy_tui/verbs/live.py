@@ -174,7 +174,11 @@ def live(
             take_duty(workspace.store.folder, by)
         world = BENCH if bench else LIVE
         tell_small_room(workspace)
-        past = past_game(workspace, world, resume=resume, discard=discard, asks=screen)
+        report = f"tangy report{common.as_given(data)}"
+        past = past_game(
+            workspace, world, resume=resume, discard=discard, asks=screen,
+            lines=plain_lines, report=report,
+        )  # fmt: skip
         learnt = recall(workspace, policy, quiet=as_json or screen)
         number = workspace.game_seed(seed) if past is None else past.beginning.seed
         from tangy_profiles.known_devices import reads_cards
@@ -196,7 +200,6 @@ def live(
             both |= {"injections": faults, "link": link}
             return opening_of(workspace, bench=bench, own=own, **both)
 
-        report = f"tangy report{common.as_given(data)}"
         if screen:
             from tangy_tui.ui.run import run_live
 

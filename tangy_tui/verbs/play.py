@@ -116,7 +116,10 @@ def play(
     with open_workspace(data, activity, users, robot=robot, room=room) as workspace:
         need_policy(workspace.store, workspace.activity, policy)
         tell_small_room(workspace)
-        past = past_game(workspace, SIMULATED, resume=resume, discard=discard, asks=screen)
+        past = past_game(
+            workspace, SIMULATED, resume=resume, discard=discard, asks=screen,
+            lines=plain_lines, report=f"tangy report{common.as_given(data)}",
+        )  # fmt: skip
         if past is not None:
             seed = past.beginning.seed
         if screen:

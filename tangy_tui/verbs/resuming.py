@@ -25,7 +25,14 @@ Discard = Annotated[
 
 
 def past_game(
-    workspace: Workspace, world: GameWorld, *, resume: bool, discard: bool, asks: bool
+    workspace: Workspace,
+    world: GameWorld,
+    *,
+    resume: bool,
+    discard: bool,
+    asks: bool,
+    lines: bool = False,
+    report: str = "",
 ) -> PastGame | None:
     """Return the interrupted game to resume, None if a new game begins.
 
@@ -35,11 +42,15 @@ def past_game(
         resume: resume without asking.
         discard: end the interrupted game.
         asks: a screen asks later; otherwise a new game begins, and a note is printed.
+        lines: staff are asked in console mode, if they type there.
+        report: the command that makes the report of an ended game.
 
     Raises:
         TangyError: nothing was interrupted, or its room is not available.
+        typer.Exit: staff play nothing now.
     """
     from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
+    from tangy_tui.console.inputs import is_typed, line_reader
 
     if resume and discard:
         raise TangyError(text.BOTH)
@@ -58,6 +69,17 @@ def past_game(
             waiting = text.waiting_words([names[person] for person in taken_up.waiting])
             print(f"tangy: {plain(waiting)}", file=sys.stderr)
         return taken_up.past
+    if lines and is_typed(None):
+        from tangy_tui.console.interrupted import ask_about_interrupted
+        from tangy_tui.text.live_games import report_words
+        from tangy_tui.verbs.common import print_line
+
+        chosen = ask_about_interrupted(
+            workspace, past, line_reader(None), print_line, report_words(report)
+        )
+        if chosen is None:
+            raise typer.Exit
+        return chosen.past
     if not asks:
         calls = len(past.called(workspace.activity))
         verb = "play" if world == SIMULATED else "live"

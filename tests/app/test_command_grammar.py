@@ -133,6 +133,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
             "bingo seventeen",
             "'seventeen' is no number of a card. Say it as in: bingo 17.",
         ),
+        ("bingo", "'bingo' alone is no number of a card. Say it as in: bingo 17."),
         ("left Nobody", "There is nobody called 'Nobody'."),
         ("Nobody has card 17", "There is nobody called 'Nobody'."),
     ],

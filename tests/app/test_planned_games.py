@@ -34,6 +34,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.interaction.game_events import Acted, GameChanged, GameEnded
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.games import read_games
@@ -177,6 +178,19 @@ def test_staff_read_what_the_group_hears_about_a_claim(
     (note,) = planned.control.apply(ClaimCard(2))
     assert isinstance(note, StaffNote) and heard == [note.words]
     assert note.words in noted_words(note, str)
+
+
+def test_staff_read_who_is_here(planned: Planned) -> None:
+    planned.begin(GamePlan(absent=("user2",)))
+    lines = Inquiries(planned.control, {"user2": "Emil"}.get, None).lines("who is here") or []  # type: ignore[arg-type]
+    assert len(lines) == 4 and lines[1].startswith("2. Emil: not here")
+
+
+def test_staff_read_whose_card_is_whose(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    name = {"user2": "Emil"}.get
+    lines = Inquiries(planned.control, lambda who: name(who, who), None).lines("cards")
+    assert lines == ["Cards: user1 1, Emil 2, user3 3, user4 4."]
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

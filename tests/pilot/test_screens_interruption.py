@@ -8,13 +8,14 @@ import pytest
 
 from tangy_profiles.game_records import GameBeginning, GameEnding
 from tangy_profiles.game_world import LIVE
+from tangy_tui.app.interruption import GameToPlay
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.name import NameDialog
-from tangy_tui.ui.interruption import GameToPlay, ask_about_interrupted
+from tangy_tui.ui.interruption import ask_about_interrupted
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
