@@ -21,6 +21,17 @@ class TallyRow:
     instances: int
     success: float
 
+    def to_json(self) -> dict[str, object]:
+        """Return the row for JSON; `success` is a share from 0 to 1."""
+        return {
+            "stage": self.situation.stage,
+            "request": self.situation.request,
+            "user_state": self.situation.user_state,
+            "behaviour": self.behaviour,
+            "instances": self.instances,
+            "success": self.success,
+        }
+
 
 @dataclass
 class Tally:
@@ -126,17 +137,7 @@ class Tally:
             "games": self.games,
             "steps": self.steps,
             "behaviours": dict(behaviours.most_common()),
-            "rows": [
-                {
-                    "stage": row.situation.stage,
-                    "request": row.situation.request,
-                    "user_state": row.situation.user_state,
-                    "behaviour": row.behaviour,
-                    "instances": row.instances,
-                    "success": row.success,
-                }
-                for row in self.rows(order)
-            ],
+            "rows": [row.to_json() for row in self.rows(order)],
             "interactions_per_user_game": self.interactions / visits if visits else 0.0,
             "beliefs": {
                 person: {strategy: [b.alpha, b.beta] for strategy, b in profile.items()}

@@ -142,17 +142,7 @@ class Session:
                 }
                 for r in self.replays
             ],
-            "rows": [
-                {
-                    "stage": row.situation.stage,
-                    "request": row.situation.request,
-                    "user_state": row.situation.user_state,
-                    "behaviour": row.behaviour,
-                    "instances": row.instances,
-                    "success": row.success,
-                }
-                for row in self.rows
-            ],
+            "rows": [row.to_json() for row in self.rows],
             "faults": fault_rows(self.faults),
             "fault_list": [one.document() for one in self.faults],
             "questions": [one.document() for one in self.questions],
