@@ -60,11 +60,6 @@ class Attention:
         """How often the person asked for help."""
         return len(self.waits) + len(self.open)
 
-    @property
-    def longest(self) -> float | None:
-        """The longest wait (s), including open requests; None if they never asked."""
-        return max([*self.waits, *self.open], default=None)
-
     def add(self, other: Attention) -> None:
         """Add the same person's attention in another game."""
         self.waits += other.waits

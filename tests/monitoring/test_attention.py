@@ -86,13 +86,13 @@ def test_a_wait_ends_on_the_arrival_of_the_robot() -> None:
     )  # fmt: skip
     ann, bob = attention_in(replay).values()
     assert (ann.waits, ann.open, ann.visits, ann.last_visit) == ([20.0], [], 1, 30.0)
-    assert (bob.requests, bob.visits, bob.longest) == (0, 0, None)
+    assert (bob.requests, bob.visits, bob.waits) == (0, 0, [])
 
 
 def test_an_unvisited_person_waits_to_the_end() -> None:
     replay = replay_of(state(FRONT), state(FRONT, ["bob"]), state(FRONT, ["bob"]))
     bob = attention_in(replay)["bob"]
-    assert (bob.waits, bob.open, bob.longest) == ([], [10.0], 10.0)
+    assert (bob.waits, bob.open) == ([], [10.0])
 
 
 def test_calls_first_does_not_interrupt_a_wait() -> None:
@@ -203,7 +203,7 @@ def test_names_replace_ids_next_to_any_punctuation() -> None:
 def test_attention_of_several_games_adds_up() -> None:
     one = Attention("ann", waits=[1.0], visits=1, seconds=2.0, last_visit=3.0)
     one.add(Attention("ann", open=[9.0], visits=2, seconds=3.0, won=1))
-    assert (one.requests, one.longest, one.visits, one.seconds) == (2, 9.0, 3, 5.0)
+    assert (one.requests, one.open, one.visits, one.seconds) == (2, [9.0], 3, 5.0)
     assert (one.won, one.last_visit) == (1, 3.0)
 
 
