@@ -3,7 +3,7 @@
 Very many poses are scored with a few beams in a field so broad that some of them are near enough.
 The best of them are refined, in narrower fields and with more beams, and fewer are kept each time.
 Without this, the right place would often be dropped because no tried pose was close enough: in a
-building of 400 m2 it is then among the poses in 1 of 8 searches, instead of in 9 of 10.
+building of 400 m2, of 100 searches of 3,000 poses only 15 would find it, instead of 40.
 """
 
 from __future__ import annotations
