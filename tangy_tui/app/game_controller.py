@@ -155,8 +155,11 @@ class GameController(PausingGames):
                 if self.stopped:  # in the meantime
                     self.robot.stop()
                     return []
+            joined = self._interrupted_at is not None
             past = self._take_past()
             events = self.supervision.begin(past, self.by)
+            if stopped and not joined:  # before there was a game to log it in
+                self.note("stopped", by=self.stopped_by)
             world = self.supervision.world
             if past is None:
                 self._watch.begin(world.seconds)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, proposal_words
@@ -74,7 +75,9 @@ class Inquiries:
     def _help(self) -> list[str]:
         if (verifying := self._controller.answers.verifying) is not None:
             return answer_help(verifying)
-        meanings = [f"  {key}: {what}" for key, what in MEANINGS]
+        claim = self._game.world.activity.rules.claim or CHECK
+        own = [line.replace(f"{CHECK} 17", f"{claim} 17") for line in map(": ".join, MEANINGS)]
+        meanings = [f"  {line}" for line in own]
         if self._game.question is None:
             return [HELP, *meanings, SAY_IN_WORDS]
         known = self._game.world.activity.behaviours.values()

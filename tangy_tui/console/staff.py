@@ -262,7 +262,7 @@ class StaffLines:
     def _tell_progress(self) -> None:
         """Write what Tangy does now, and what it asks about a card or after a freeze."""
         self._freezes.ask(self._typed)
-        self._telling.write_all(self._progress.news())
+        self._telling.write_all(self._progress.news() if self._begun.is_set() else ())
         if self._ahead.ended and self._progress.asks:
             self._telling.tell([*self._controller.apply(EndGame())])
 

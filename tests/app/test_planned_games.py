@@ -180,6 +180,13 @@ def test_staff_read_what_the_group_hears_about_a_claim(
     assert note.words in noted_words(note, str)
 
 
+def test_help_has_the_word_that_people_call_out(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    lines = Inquiries(planned.control, str, None).lines("help") or []
+    claim = planned.workspace.activity.rules.claim
+    assert [line for line in lines if line.startswith(f"  {claim} 17: ")]
+
+
 def test_staff_read_who_is_here(planned: Planned) -> None:
     planned.begin(GamePlan(absent=("user2",)))
     lines = Inquiries(planned.control, {"user2": "Emil"}.get, None).lines("who is here") or []  # type: ignore[arg-type]

@@ -13,8 +13,11 @@ import pytest
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_world import LIVE
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.command_grammar import read_command
-from tangy_tui.app.game_commands import GoOn, Joins
+from tangy_tui.app.game_commands import GoOn, Joins, StopRobot
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.joining import resume_joined
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.switching_on import switched_on
@@ -22,7 +25,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inputs import ReadAhead
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.console.switching_on import SwitchingOnLines
-from tests.app.test_joining import LiveGame
+from tests.app.test_joining import SEED, LiveGame
 from tests.support.waiting import wait_until
 
 
@@ -124,3 +127,22 @@ def test_a_stop_before_the_game_is_asked_about(
     console = SetUpLines(setup, lambda: next(typed, None), lambda line: None)
     assert console.begins_anyway(stopped=stopped) is begins
     assert len(told) == stops
+
+
+def test_a_stop_before_a_game_is_resumed_is_in_its_log(taught: Path) -> None:
+    workspace = Workspace(taught)
+    LiveGame(workspace).play(3)
+    workspace.close()  # and kill -9
+
+    workspace = Workspace(taught)
+    past = find_interrupted(workspace, LIVE)
+    assert past is not None
+    game = LiveGame(workspace)  # only for its robot
+    supervision = workspace.supervision(game.control.supervision.policy, SEED, world=game.world)
+    control = GameController(supervision, "Ada", robot=game.world, past=past)
+    control.apply(StopRobot())
+    control.begin()
+    assert control.phase == "stopped"
+    acts = [event.record for event in workspace.store.events(StaffAction)]
+    assert [(act.game, act.did) for act in acts] == [(past.beginning.game, "stopped")]
+    workspace.close()
