@@ -16,6 +16,7 @@ from tangy_tui.app.game_commands import (
     EndGame,
     GameCommand,
     GoesAway,
+    GoOn,
     Joins,
     LetWin,
     SetPace,
@@ -94,11 +95,7 @@ class SetUpLines:
 
     def _tell_unknown(self, words: str) -> None:
         """Tell which command may have been meant, or that it works only in a game."""
-        try:
-            in_a_game = self._command(words) is not None
-        except TangyError:
-            in_a_game = False
-        if in_a_game:
+        if self._command_in(words) is not None:
             self._write(text.in_a_game_words(words))
             return
         first = words.partition(" ")[0].casefold()
@@ -127,20 +124,21 @@ class SetUpLines:
         if not (not_ready or stopped):
             return True
         while (line := self._read()) is not None and line.strip().casefold() not in _NO:
-            if line.strip().casefold() == "begin":
+            command = self._command_in(line)
+            if line.strip().casefold() == "begin" or isinstance(command, GoOn):
                 return True
-            if self._stops(line):
+            if isinstance(command, StopRobot):
                 self._stop()
             else:
                 self._write(text.begin_or_end(line.strip()))
         return False
 
-    def _stops(self, line: str) -> bool:
-        """Return whether a line is a STOP."""
+    def _command_in(self, line: str) -> GameCommand | None:
+        """Return the command of games in a line, if there is a right one."""
         try:
-            return isinstance(self._command(line), StopRobot)
+            return self._command(line)
         except TangyError:
-            return False
+            return None
 
     def _stop(self) -> None:
         """Stop the robot; beginning the game releases it."""

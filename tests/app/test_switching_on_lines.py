@@ -110,7 +110,8 @@ def test_lines_are_taken_until_the_robot_is_on() -> None:
         (["begin"], True, True, 1),
         (["end"], True, False, 1),
         ([], False, True, 0),
-        (["stop the robot", "begin"], True, True, 2),
+        (["stop the robot", "perhaps", "begin"], True, True, 2),
+        (["go on"], True, True, 1),
     ],
 )
 def test_a_stop_before_the_game_is_asked_about(
