@@ -42,7 +42,11 @@ def read_asking_limits(top: Table) -> AskingLimits:
 
 
 def read_strategies(table: Table) -> dict[str, str]:
-    """Read the persuasive strategies with their descriptions."""
+    """Read the persuasive strategies with their descriptions.
+
+    Raises:
+        ProfileError: there is none.
+    """
     strategies = {key: table.text(key) for key in table}
     if not strategies:
         raise table.wrong("", "must name at least one persuasive strategy.")
@@ -50,7 +54,11 @@ def read_strategies(table: Table) -> dict[str, str]:
 
 
 def read_pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
-    """Read which strategies press people; the default is the usual ones."""
+    """Read which strategies press people; the default is the usual ones.
+
+    Raises:
+        ProfileError: a strategy is unknown, or none is left for people who refuse.
+    """
     usual = tuple(name for name in PRESSING_STRATEGIES if name in strategies)
     usual = usual if len(usual) < len(strategies) else ()
     pressing = top.words("pressing_strategies", strategies, usual)
@@ -60,7 +68,11 @@ def read_pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
 
 
 def read_user_states(top: Table) -> tuple[CardState, ...]:
-    """Read the user activity states and the checkers that recognise them on a card."""
+    """Read the user activity states and the checkers that recognise them on a card.
+
+    Raises:
+        ProfileError: a name stands twice, or a necessary checker is missing or stands twice.
+    """
     states: list[CardState] = []
     for entry in top.tables("user_states"):
         name = entry.text("name")
@@ -85,7 +97,11 @@ def read_user_states(top: Table) -> tuple[CardState, ...]:
 
 
 def read_sentence(table: Table, key: str, sentence: str) -> str:
-    """Check that {name} is the only slot of a sentence."""
+    """Check that {name} is the only slot of a sentence.
+
+    Raises:
+        ProfileError: it has another slot.
+    """
     if "{" in sentence.replace("{name}", "") or "}" in sentence.replace("{name}", ""):
         raise table.wrong(key, "can have nothing filled in but {name}.")
     return sentence

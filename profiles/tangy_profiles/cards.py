@@ -161,6 +161,9 @@ def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> 
         deck: the deck of the card.
         marked: the marked cells, as a mask.
         called: the cells whose number has been called (and the free centre), as a mask.
+
+    Raises:
+        ValueError: every state has a condition; `read_user_states` rejects such an activity.
     """
     for state in states:
         match state.checker:
@@ -224,7 +227,11 @@ def is_borne_out(checker: str, deck: Deck, marked: int, unmarked: int, called: i
 
 
 def read_deck(table: Table) -> Deck:
-    """Read a deck and check that its cards can be filled."""
+    """Read a deck and check that its cards can be filled.
+
+    Raises:
+        ProfileError: a key is wrong, or no card can be filled from the columns.
+    """
     rows = table.whole("rows", 1, 9)
     columns: list[Column] = []
     for entry in table.tables("columns"):

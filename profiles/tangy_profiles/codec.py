@@ -182,7 +182,11 @@ def reader(hint: Any) -> Reader:
 
 
 def at_least(least: int) -> Reader:
-    """Accept whole numbers of at least `least`, and lists of at least that length."""
+    """Accept whole numbers of at least `least`, and lists of at least that length.
+
+    Raises:
+        InvalidValue: (the decoder) it is smaller or shorter.
+    """
 
     def check(value: Any) -> Any:
         whole = isinstance(value, int)
@@ -194,7 +198,11 @@ def at_least(least: int) -> Reader:
 
 
 def within_range(least: int, most: int) -> Reader:
-    """Accept whole numbers in an inclusive range."""
+    """Accept whole numbers in an inclusive range.
+
+    Raises:
+        InvalidValue: (the decoder) it is outside.
+    """
 
     def check(value: Any) -> Any:
         if not least <= value <= most:
@@ -209,7 +217,11 @@ Count = Annotated[int, at_least(0)]
 
 
 def measurement(value: Any) -> Any:
-    """Accept a device's measurement: a finite number, yes or no, or a word."""
+    """Accept a device's measurement: a finite number, yes or no, or a word.
+
+    Raises:
+        InvalidValue: it is none.
+    """
     number = isinstance(value, int | float) and abs(value) <= sys.float_info.max
     if not (number or isinstance(value, str)):
         raise InvalidValue("is not a measurement")
@@ -217,7 +229,11 @@ def measurement(value: Any) -> Any:
 
 
 def one_of(*words: str) -> Reader:
-    """Return a decoder that accepts one of these words."""
+    """Return a decoder that accepts one of these words.
+
+    Raises:
+        InvalidValue: (the decoder) it is another word; with the nearest one.
+    """
 
     def take(value: Any) -> Any:
         if _text(value) not in words:

@@ -192,7 +192,11 @@ class LogFile:
 
     @contextmanager
     def in_words(self) -> Iterator[None]:
-        """Turn errors of SQLite or the file system into one sentence."""
+        """Turn errors of SQLite or the file system into one sentence.
+
+        Raises:
+            StoreError: the sentence.
+        """
         try:
             yield
         except sqlite3.ProgrammingError:
@@ -334,6 +338,9 @@ def hold(path: Path) -> tuple[FileIO, str]:
 
     The kernel releases the lock when the process ends. Removing the file would race with the next
     writer.
+
+    Raises:
+        StoreBusy: another process holds it.
     """
     file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT, 0o600), "r+")
     left = file.read(200).decode(errors="replace")

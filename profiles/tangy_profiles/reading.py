@@ -65,7 +65,11 @@ def _short(text: str, most: int = 60) -> str:
 
 
 class Table:
-    """One TOML table. Reading a key checks it; `close` rejects keys that were not read."""
+    """One TOML table. Reading a key checks it; `close` rejects keys that were not read.
+
+    Every reader raises a `ProfileError` with file, line and key if the value is missing and has no
+    default, or is invalid.
+    """
 
     def __init__(
         self,

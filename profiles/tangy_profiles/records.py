@@ -118,6 +118,9 @@ def kind(
         about: the subject of its rows.
         version: incremented whenever an earlier body would be misread.
         older: converts bodies of earlier versions to this one.
+
+    Raises:
+        TypeError: the kind has a record already.
     """
 
     def make(cls: type[R]) -> type[R]:

@@ -101,6 +101,9 @@ def read_header(content: bytes, name: str) -> tuple[Format, int, int] | None:
     """Return the format, and the offset and number of bytes of the samples.
 
     None if the content ends before the samples begin.
+
+    Raises:
+        SoundError: it is not a WAV file, or its samples cannot be read; one sentence.
     """
     if content[:4] != b"RIFF"[: len(content)] or content[8:12] not in (b"WAVE", b""):
         raise SoundError(f"{name}: is not a WAV file; {HOW_TO_RECORD}.")

@@ -82,7 +82,12 @@ class Capture:
         self._first = True
 
     def open(self) -> None:
-        """Open the source."""
+        """Open the source.
+
+        Raises:
+            NoFrame: a camera or stream cannot be opened.
+            StreamEnded: a file is no video.
+        """
         import cv2
 
         self.close()
@@ -122,7 +127,12 @@ class Capture:
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
 
     def read(self) -> Image:
-        """Return the next frame (BGR)."""
+        """Return the next frame (BGR).
+
+        Raises:
+            NoFrame: no frame came in time, or the camera is unplugged.
+            StreamEnded: a file is at its end.
+        """
         image = self._read() if self._held is None else self._held
         self._held = None
         if self._source.kind == "stream" and _perhaps_half(image):
@@ -160,7 +170,11 @@ class Folder:
         self._given = 0
 
     def open(self) -> None:
-        """Open the source."""
+        """Open the source.
+
+        Raises:
+            StreamEnded: the folder cannot be read.
+        """
         self._given = 0
         try:
             self._left = pictures_in(Path(self._source.target))[::-1]
@@ -168,7 +182,11 @@ class Folder:
             raise StreamEnded("the folder cannot be read any more") from None
 
     def read(self) -> Image:
-        """Return the next image (BGR)."""
+        """Return the next image (BGR).
+
+        Raises:
+            StreamEnded: no image is left.
+        """
         while self._left:
             image = _read_picture(self._left.pop())
             if image is not None:

@@ -50,7 +50,11 @@ class RosPictures:
         self._opened = ExitStack()
 
     def open(self) -> None:
-        """Connect, and subscribe to the topic."""
+        """Connect, and subscribe to the topic.
+
+        Raises:
+            NoFrame: the server does not answer.
+        """
         self.close()
         asks = {
             "op": "subscribe", "topic": self._topic, "type": self._type,
@@ -65,7 +69,11 @@ class RosPictures:
             raise NoFrame("nobody answers there") from None
 
     def read(self) -> Image:
-        """Return the newest frame (BGR) as soon as there is one."""
+        """Return the newest frame (BGR) as soon as there is one.
+
+        Raises:
+            NoFrame: no picture of the topic came in time, or the connection broke.
+        """
         until = time.monotonic() + READ_SECONDS
         while (text := self._newest(until - time.monotonic())) is not None:
             image = decoded(text, self._topic)

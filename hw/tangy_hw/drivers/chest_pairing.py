@@ -71,7 +71,7 @@ class Pairing:
         return hmac.new(self.key, name.encode(), hashlib.sha256).hexdigest()
 
     def to_json(self) -> dict[str, str]:
-        """Return it as JSON."""
+        """Return the secrets and the code, to be kept in a file and read by `from_json`."""
         return {"key": self.key.hex(), "code": self.code}
 
     @classmethod

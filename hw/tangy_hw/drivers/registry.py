@@ -26,7 +26,11 @@ from tangy_profiles.robot import Robot
 
 
 class DriverSettings:
-    """Settings of one driver; `close` rejects those that no driver took."""
+    """Settings of one driver; `close` rejects those that no driver took.
+
+    Every reader raises a `DeviceError` with the device and the key if the value is missing and has
+    no default, or is invalid.
+    """
 
     def __init__(self, device: str, kind: str, values: Mapping[str, Setting]) -> None:
         self.device = device

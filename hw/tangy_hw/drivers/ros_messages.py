@@ -23,7 +23,11 @@ LEVELS: tuple[DeviceState, ...] = (OK, WARN, ERROR, STALE)
 
 
 def number(value: object) -> float:
-    """Return a finite number."""
+    """Return a finite number.
+
+    Raises:
+        ValueError: it is none.
+    """
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ValueError(f"{value!r:.40} is no finite number")
     return float(value)
@@ -106,6 +110,9 @@ def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.flo
     Args:
         message: the message.
         turned: rotation of the scanner to the left of the robot's front, in rad.
+
+    Raises:
+        KeyError, TypeError, ValueError: it is no valid scan.
     """
     raw = np.array(message["ranges"], float)
     first, step = number(message["angle_min"]), number(message["angle_increment"])
@@ -144,7 +151,11 @@ def trajectory_message(joints: Mapping[str, float], seconds: float, ros: int) ->
 
 
 def statuses_of(message: Message) -> list[tuple[str, DeviceState, str, dict[str, str]]]:
-    """Return name, state, message and values of each status in a DiagnosticArray."""
+    """Return name, state, message and values of each status in a DiagnosticArray.
+
+    Raises:
+        KeyError, TypeError, ValueError: it is no valid array.
+    """
     found: list[tuple[str, DeviceState, str, dict[str, str]]] = []
     for status in message["status"]:
         level = status["level"]

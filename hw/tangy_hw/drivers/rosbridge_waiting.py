@@ -53,7 +53,7 @@ class PendingRequests:
         return key, future
 
     def goal(self, action: str, feeds: Callable[[Message], None] | None) -> Goal:
-        """Return a new goal."""
+        """Note a goal of a ROS action, with a callback for its feedback."""
         goal = Goal(f"{self._mark} {next(self._numbers)}", action, feeds)
         self._goals[goal.key] = goal
         return goal

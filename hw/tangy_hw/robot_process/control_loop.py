@@ -77,7 +77,11 @@ class ControlLoop:
                     await asyncio.sleep(0)
 
     async def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Let time pass until a condition holds, with a timeout in s; return whether it does."""
+        """Let time pass until a condition holds, with a timeout in s; return whether it does.
+
+        Raises:
+            DeviceError: the robot's time stands still, because the control loop failed.
+        """
         if self._failed is not None:
             raise DeviceError(f"The robot's time stands still ({self._failed!r}).")
         deadline = self.clock.now() + seconds

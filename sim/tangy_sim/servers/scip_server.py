@@ -98,6 +98,9 @@ class ScipServer(Connections[_Wire]):
 
         Returns:
             The number of clients that got it.
+
+        Raises:
+            ValueError: it has not as many ranges as the scanner has beams.
         """
         if len(ranges) != self.scanner.beams:
             raise ValueError(f"{len(ranges)} ranges for {self.scanner.beams} beams")
