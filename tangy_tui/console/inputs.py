@@ -28,7 +28,11 @@ def any_waits(lines: Iterable[str]) -> bool:
 
 
 def line_reader(script: Path | None) -> Callable[[], str | None]:
-    """Return a function that reads lines from the script or standard input."""
+    """Return a function that reads lines from the script or standard input.
+
+    Raises:
+        TangyError: the script cannot be read, or is too large.
+    """
     if script is None:
         lines_in = sys.stdin  # None if it is closed
         return lambda: lines_in.readline() or None if lines_in is not None else None
@@ -81,6 +85,9 @@ def keys_from_terminal(script: Path | None) -> int:
 
     Returns:
         The new file descriptor of the sound.
+
+    Raises:
+        TangyError: there is no terminal.
     """
     sound = os.dup(0)
     try:

@@ -98,7 +98,11 @@ def play(settings: Settings, case: Case) -> list[dict[str, Any]]:
 
 
 def group(settings: Settings, seed: int) -> dict[str, Any]:
-    """Play the games of one group, and return its document (see `play`)."""
+    """Play the games of one group, and return its document (see `play`).
+
+    Raises:
+        TangyError: a game does not end.
+    """
     activity = activity_of(settings["activity"])
     people = tuple(person.id for person in load_people(settings["users"]))
     preferences = preferences_in_turn(people, tuple(activity.strategies), load_users())

@@ -118,7 +118,11 @@ class StoredResults:
             self.results[_key(case)] = result
 
     def add(self, key: str, result: Any) -> None:
-        """Store a result."""
+        """Store a result.
+
+        Raises:
+            TangyError: the file cannot be written.
+        """
         if self.path is not None:
             line = f"[{key},{json.dumps(result, ensure_ascii=False, separators=(',', ':'))}]\n"
             try:

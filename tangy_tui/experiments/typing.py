@@ -75,6 +75,9 @@ def teach_by_typing(settings: Settings, case: Case) -> dict[str, Any]:
         `seconds` from starting the program to the end of the game on its screen; the numbers of
         `steps` and `keys`; `human`, the seconds of these for typing, looking and reading; and
         `start`, the seconds until the program was ready.
+
+    Raises:
+        TangyError: the program did not keep what was typed.
     """
     activity = activity_of(settings["activity"])
     pace = Pace(**settings["pace"])

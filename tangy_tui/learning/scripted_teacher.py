@@ -31,7 +31,11 @@ class ScriptedTeacher:
         self._phrases = {b.name: b.phrases[0] for b in teaching.activity.behaviours.values()}
 
     def command(self) -> Say | Reply | Next:
-        """Return the teacher's next command."""
+        """Return the teacher's next command.
+
+        Raises:
+            TangyError: the activity does not say what is expected here.
+        """
         teaching = self._teaching
         if teaching.demonstration.finished:
             return Next()
@@ -55,7 +59,11 @@ class ScriptedTeacher:
         return "" if person == usual else f" to {teaching.name(person)}"
 
     def demonstrate(self) -> Iterator[TeachingEvent]:
-        """Demonstrate until the game is over, yielding each event."""
+        """Demonstrate until the game is over, yielding each event.
+
+        Raises:
+            TangyError: nothing is expected in a situation, or the game does not end.
+        """
         for _ in range(2 * MOST_STEPS):
             if self._teaching.demonstration.finished:
                 return

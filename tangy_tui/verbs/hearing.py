@@ -103,7 +103,11 @@ class Listening:
 
 
 def recorder_for(workspace: Workspace, teacher: str) -> Recorder | None:
-    """Return a recorder for a teacher who consents; None without consent."""
+    """Return a recorder for a teacher who consents; None without consent.
+
+    Raises:
+        TangyError: consent has to be asked for, and there is no terminal.
+    """
     from tangy_tui.speech.recordings import FOLDER, Recorder, consent, consented
     from tangy_tui.text.hearing import consent_question
 
