@@ -17,12 +17,14 @@ from tangy_hw.navigation.occupancy import OCCUPIED, OccupancyMap
 from tangy_hw.navigation.poses import endpoints, transform_points
 from tangy_hw.navigation.revisits import Revisits
 
-TORN = 0.15
+TORN = 0.1
 """Share of contradicted beams from which a map counts as torn.
 
-Chosen on simulated rooms and corridors with matched scans: maps that closed had at most .03, maps
-that did not close at least .23. On Freiburg's building 079, which was not used for choosing, the
-corrected log has .07, and newly matched scans, which tear the map, .30.
+On simulated rooms and corridors with matched scans, maps that closed had at most .03, maps that did
+not close at least .23. On Freiburg's building 079 the corrected log has .07, and newly matched
+scans, which tear the map, .30. In three drives round a corridor of 22 x 15 m, maps that were at
+most .25 and .39 m off the true walls had .04 and .06; one that was .58 m off had .13, and with its
+loops closed, .13 m off, .03.
 """
 
 UNSURE = 0.025
