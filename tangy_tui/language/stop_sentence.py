@@ -59,7 +59,7 @@ STOPS = (
 TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immediately")
 """Words whose misspellings are corrected."""
 SAME_WORD = 0.7  # similarity from which an unknown word counts as a misspelling
-LIKELY = 0.7  # likelihood from which words without a verb of stopping stop the robot
+LIKELY = 0.6  # likelihood from which words without a verb of stopping stop the robot
 FEWEST = 3  # words that such a sentence has; fewer are mostly commands to the program
 _VERB = re.compile(r"\b(?:stop|halt)")  # what the rules judge alone
 _PAUSES = re.compile(r"[.!?;:,\n\u2026\u2013\u2014]+|\s-+\s")
