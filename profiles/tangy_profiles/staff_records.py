@@ -13,6 +13,7 @@ StaffActionKind = Literal[
     "stopped",
     "let go on",
     "took over",
+    "gave back",
     "ended",
     "autonomy",
     "drove",

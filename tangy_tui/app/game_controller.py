@@ -319,12 +319,14 @@ class GameController(PausingGames):
         return [StaffNote("takes over")]
 
     def _give_back(self) -> list[Result]:
-        taken = self.taking_over or self.supervision.question is not None
-        if not taken:
-            return [StaffNote("nothing asked")]
-        self.taking_over = False
         question = self.supervision.question
-        if question is not None and question.fault == TAKEN_OVER:
+        if not self.taking_over and question is None:
+            return [StaffNote("nothing asked")]
+        asked = question is not None and question.fault == TAKEN_OVER
+        if self.taking_over or asked:
+            self.note("gave back")
+        self.taking_over = False
+        if asked:
             self.supervision.game.withdraw()
         return [StaffNote("given back")]
 

@@ -53,6 +53,8 @@ def did_words(noted: Noted, name: Name) -> str:
             return "let the robot go on after a stop"
         case "took over":
             return "took over, to say what Tangy does next"
+        case "gave back":
+            return "let Tangy go on by itself"
         case "ended":
             return "ended the game"
         case "autonomy":
@@ -117,6 +119,8 @@ def action_words(noted: Noted, name: Name) -> str:
             return "the robot was released after a stop"
         case "took over":
             return "control was taken over"
+        case "gave back":
+            return "Tangy went on by itself"
         case "ended":
             return "the game was ended"
         case "autonomy":

@@ -180,6 +180,8 @@ def test_staff_take_over_choose_a_behaviour_and_give_back(live: Played) -> None:
     control.apply(TakeOver())
     control.next()
     assert kinds(control.apply(GiveBack())) == ["given back"] and live.phase == "running"
+    assert kinds(control.apply(GiveBack())) == ["nothing asked"]
+    assert [did for did, _ in live.logged()] == ["took over", "took over", "gave back"]
     assert live.next() == ["call number"]
 
 
