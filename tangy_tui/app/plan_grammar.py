@@ -42,6 +42,13 @@ _CARD = re.compile(
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
+def one_person_each(said: str) -> list[str]:
+    """Return a line for each person if a line says of several that they are here or have left."""
+    found = re.fullmatch(r"(here|left) (.+)", said.strip(" ."), re.I)
+    names = [] if found is None else re.split(r",(?: and)? | and ", found[2])
+    return [said] if found is None or len(names) < 2 else [f"{found[1]} {one}" for one in names]
+
+
 def read_planned(
     said: str, find_person: Callable[[str], str], rules: GameRules
 ) -> GameCommand | None:

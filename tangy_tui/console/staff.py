@@ -33,6 +33,7 @@ from tangy_tui.app.game_commands import (
     StopRobot,
 )
 from tangy_tui.app.game_controller import ControllerOutput, GameController
+from tangy_tui.app.plan_grammar import one_person_each
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.answering import AnsweredQuestions
 from tangy_tui.console.confirming import ConfirmingStaff
@@ -333,7 +334,12 @@ class StaffLines:
         try:
             command = self._command(text)
         except TangyError as error:
-            self._telling.write(str(error))
+            each = one_person_each(text)
+            if len(each) == 1:
+                self._telling.write(str(error))
+                return
+            for line in each:
+                self._take(line)
             return
         if isinstance(command, StopRobot):
             self._sure.drop()

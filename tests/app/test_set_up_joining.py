@@ -42,6 +42,11 @@ def test_a_person_is_added_on_the_seat_that_staff_name(
     assert (setup.seats[seat - 1] in guest_ids(workspace.store)) is line.startswith("guest")
 
 
+def test_a_line_can_say_of_several_people_that_they_left(workspace: Workspace) -> None:
+    setup, _ = typed(workspace, "left User 1, User 2 and User 4", "here User 2 and User 1")
+    assert setup.away == {"user4"}
+
+
 @pytest.mark.parametrize(
     "line", ["add Berta on seat 6", "add Berta at table 2", "add", "add User 2", "add user"]
 )

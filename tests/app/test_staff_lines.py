@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.events import EventRecord
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import GoOn, StopRobot
 from tangy_tui.app.game_controller import GameController
@@ -94,6 +95,12 @@ def test_a_game_that_waits_without_further_lines_ends(
 ) -> None:
     written, ended = told(workspace, *lines, speed=50)
     assert not ended and NOBODY in written
+
+
+def test_a_line_can_say_of_several_people_that_they_left(workspace: Workspace) -> None:
+    told(workspace, "pause", "left User 2, User 3 and User 9", "end", speed=50)
+    left = [e.record.person for e in workspace.store.events(StaffAction) if e.record.did == "left"]
+    assert left == ["user2", "user3"]
 
 
 def test_staff_pause_stop_resume_take_over_and_end_by_lines(workspace: Workspace) -> None:
