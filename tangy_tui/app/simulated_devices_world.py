@@ -25,7 +25,6 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
-from tangy_profiles.known_cards import KnownCards
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.device_simulator.tablet import Tablet
@@ -138,14 +137,18 @@ class BenchedWorld(LiveWorld):
         return state
 
     def resume(self, past: PastGame) -> ActivityState:
-        """Resume an interrupted game, and inject the faults that are still to come."""
-        state = super().resume(past)
+        """Resume an interrupted game with its cards, and inject the faults still to come."""
+        known = {**past.cards.seen, **past.cards.given}
+        cards = {person: card for person, card in known.items() if person in self.people}
+        called = past.called(self.activity)
+        self.bench.do("rules", called=called, cards=cards)  # before the robot looks at a card
+        super().resume(past)
+        asking = [one for one in past.asked(self.activity) if one not in self.away]
+        away = sorted(self.away)
+        self.bench.do("rules", called=called, cards=cards, asking=asking, away=away, **self._wins)
         left, self._left = self._left, None
         self._to_come = ToCome(self.injections if left is None else left, self._chance)
-        return state
-
-    def _recall(self, cards: KnownCards) -> None:
-        """Know nothing again: a bench that was started anew has dealt other cards."""
+        return self.observe()
 
     def carry_over(self, before: BenchedWorld) -> None:
         """Inject only the faults still to come if the game of a world `before` is resumed here."""

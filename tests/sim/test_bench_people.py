@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from typing import ClassVar
 
 import pytest
 from hypothesis import given, settings
@@ -12,6 +13,7 @@ from tangy_profiles.card_face import numbers_of
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.state import FRONT
+from tangy_sim.device_simulator.house_rules import tell
 from tangy_sim.device_simulator.people import HIDES
 from tangy_sim.device_simulator.speech_reception import SpeechReception, speaking_seconds
 from tangy_sim.device_simulator.world import BenchWorld
@@ -253,3 +255,41 @@ def test_people_read_further_numbers_on_the_chest_screen() -> None:
         assert few is not None and many is not None
         assert (few.numbers, few.more) == (numbers[:3], False)
         assert (many.numbers, many.more) == (numbers[:4], True)
+
+
+class TestAnInterruptedGame:
+    CALLED = (3, 18, 33, 48, 63, 5, 20, 35)
+    CARDS: ClassVar = {"user1": 17, "user2": 31, "user3": 99}
+
+    def resumed(self, **also: object) -> BenchWorld:
+        """Make a world that was switched on anew in the middle of a game."""
+        world = bench(3)
+        tell(world.people, {"called": self.CALLED, "cards": self.CARDS, **also})
+        return world
+
+    def test_people_go_on_with_their_cards_and_marks(self) -> None:
+        world = self.resumed()
+        for person, card in self.CARDS.items():
+            sitter = world.people.sitters[person]
+            assert sitter.card == card and sitter.player.numbers == numbers_of(ACTIVITY.deck, card)
+            there = set(sitter.player.numbers) & set(self.CALLED)
+            free = world.people.activity.deck.free
+            assert set(sitter.player.cells(sitter.player.marked & ~free)) == there
+            assert not sitter.player.has_error
+
+    def test_people_who_asked_still_ask(self) -> None:
+        assert self.resumed(asking=["user3"]).people.asking == ("user3",)
+
+    def test_people_ask_for_help_again_as_the_game_goes_on(self) -> None:
+        world = self.resumed()
+        for number in range(1, 76):
+            if number not in self.CALLED:
+                say(world, "call number", "", number)
+        assert world.people.asking
+
+    def test_a_call_that_was_taken_back_before_does_not_count(self) -> None:
+        world = self.resumed()
+        tell(world.people, {"taken_back": 18})
+        assert 18 not in world.people.game.called
+        for sitter in world.people.sitters.values():
+            assert 18 not in sitter.player.cells(sitter.player.marked)

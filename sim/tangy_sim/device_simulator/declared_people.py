@@ -20,8 +20,9 @@ from tangy_profiles.declared.model import Fact
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES, Named
 from tangy_profiles.person import Person
 from tangy_sim.device_simulator.faults import Faults
-from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People, Sitter
+from tangy_sim.device_simulator.people import CLEAR, TURNS_DOWN, People
 from tangy_sim.device_simulator.signs import LETTERS
+from tangy_sim.device_simulator.sitters import Sitter
 from tangy_sim.device_simulator.speech_reception import HeardLine
 from tangy_sim.worlds.clarity import UNCLEAR, Clarity
 from tangy_sim.worlds.compliance import respond

@@ -23,8 +23,9 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
         people: the group.
         told: optional keys: `patterns` and `together` of what wins; `done`, the person whose sign
             comes down; `away`, the absent people; `taken_back`, a number that counts as not called;
-            `memory`, an interrupted game by facts to go on with; `rows`, the rows of the items
-            whose picture or sound comes with the next sentence.
+            `memory`, an interrupted game by facts to go on with; `called`, the calls of one with
+            cards, with everybody's card in `cards` and who asks already in `asking`; `rows`, the
+            rows of the items whose picture or sound comes with the next sentence.
 
     Raises:
         KeyError: an unknown person or pattern.
@@ -36,6 +37,11 @@ def tell(people: People, told: Mapping[str, Any]) -> dict[str, Any]:
         people.perceived = tuple(map(int, told["rows"]))
     if "patterns" in told:
         _play_for(people, tuple(map(str, told["patterns"])), int(told["together"]))
+    if "called" in told and not isinstance(people, DeclaredPeople):
+        cards = {str(person): int(card) for person, card in told["cards"].items()}
+        people.resume(cards, [int(number) for number in told["called"]])
+        for person in told.get("asking", ()):
+            people.ask(str(person))
     if "done" in told:
         people.sitters[str(told["done"])].asks_since = None
     if "away" in told:

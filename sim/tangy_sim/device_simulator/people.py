@@ -8,8 +8,7 @@ people's time advances with what they hear: by one call for each behaviour befor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from random import Random
 from typing import assert_never
@@ -22,6 +21,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.state import FRONT, Response
 from tangy_sim.device_simulator.agenda import Agenda
 from tangy_sim.device_simulator.faults import Faults
+from tangy_sim.device_simulator.sitters import GameProgress, Sitter
 from tangy_sim.device_simulator.speech_reception import HeardLine
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.worlds.faulty_world import HELPS
@@ -36,42 +36,6 @@ CLEAR = 1.0  # s: nobody acts so near the end of a window that the outcome would
 GIVES_UP = 3  # refused requests after which a person takes the sign down
 HIDES = ("away", "edge", "sheet")
 """How a card is out of view: absent, mostly outside the image, under a sheet."""
-
-
-@dataclass
-class Sitter:
-    """A person at the table, with a card and a sign.
-
-    `asks_since` is the time (s) at which the sign went up, None while it is down; `hides` how the
-    card is out of view, "" if it is visible; `moved` how often the card was moved, `refused` how
-    many requests the person refused.
-    """
-
-    player: SimulatedUser
-    card: int
-    asks_since: float | None = None
-    hides: str = ""
-    moved: int = 0
-    refused: int = 0
-
-    @property
-    def id(self) -> str:
-        """Id of the person."""
-        return self.player.id
-
-
-@dataclass
-class GameProgress:
-    """Events of a game so far, as everybody in the room knows them."""
-
-    opened: bool = False
-    over: bool = False
-    called: list[int] = field(default_factory=list)
-    responses: list[Response] = field(default_factory=list)
-    spoken: list[str] = field(default_factory=list)
-    """People who have asked for help aloud, because signs cannot be seen."""
-    acts: list[tuple[str, str, str, float]] = field(default_factory=list)
-    """Observations that no sensor sees: fact, person, value, certainty."""
 
 
 class People:
@@ -130,6 +94,24 @@ class People:
             person: Sitter(SimulatedUser(person, deck, numbers_of(deck, card, USUAL_SEED)), card)
             for person, card in zip(self.ids, dealt, strict=True)
         }
+
+    def resume(self, cards: Mapping[str, int], called: Sequence[int]) -> None:
+        """Go on with an interrupted game, in which everybody has marked what was called.
+
+        Args:
+            cards: the card of each person; others keep theirs.
+            called: the numbers that count as called.
+        """
+        deck = self.activity.deck
+        self.game.called, self._calls, self._time = [*called], len(called), float(len(called))
+        for person, sitter in self.sitters.items():
+            sitter.card = cards.get(person, sitter.card)
+            player = SimulatedUser(person, deck, numbers_of(deck, sitter.card, USUAL_SEED))
+            player.catch_up(called)
+            player.slips_at = self._calls + waiting_calls(self._uniform, self.users.slip)
+            sitter.player = player
+        self._left_to_open.clear()
+        self._open()
 
     @property
     def asking(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from math import log
@@ -88,6 +88,13 @@ class SimulatedUser:
             if marked & line == line:
                 return True
         return False
+
+    def catch_up(self, called: Iterable[int]) -> None:
+        """Mark all numbers that were called so far, and no others."""
+        for number in called:
+            if (cell := self.cell.get(number)) is not None:
+                self.called |= 1 << cell
+        self.marked = self.called
 
     def uncall(self, number: int) -> None:
         """Revert the call of a number, and remove a marker on it."""
