@@ -36,6 +36,7 @@ from tests.bench.spoken_stops import VOICES, Said, Voices
 
 SETS = {
     "second": "requests_second.toml",
+    "held": "requests_held.toml",
     "development": "requests_development.toml",
     "staff": "staff_requests.toml",
     "sayings": "staff_sayings.toml",

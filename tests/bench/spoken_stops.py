@@ -42,7 +42,11 @@ from tests.bench.speech import BOOK
 from tests.bench.stop_training import stop_examples
 
 HERE = Path(__file__).parent
-FILES = {"fresh": "stop_fresh.toml", "development": "stop_development.toml"}
+FILES = {
+    "fresh": "stop_fresh.toml",
+    "held": "stop_held.toml",
+    "development": "stop_development.toml",
+}
 FESTIVAL = {"kal_diphone": "kal_diphone", "slt_hts": "cmu_us_slt_arctic_hts"}
 VOICES = (
     *("slt", "rms", "awb", "kal", *FESTIVAL, "en-gb", "en-gb+m3", "en-us+f2"),
