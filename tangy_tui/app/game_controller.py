@@ -30,6 +30,7 @@ from tangy_tui.app.game_commands import (
     CallAgain,
     CallExpert,
     Clear,
+    ComesIn,
     Confirm,
     Drive,
     EndGame,
@@ -278,7 +279,7 @@ class GameController(PausingGames):
             case Confirm(yes):
                 return self._confirm(yes=yes)
             case Joins():
-                return self._let_join(command)
+                return self._let_in(command)
             case AskFor() | Tell() | HasCard():
                 return [self.robot.do(command)]
             case CallAgain() | Drive():
@@ -291,6 +292,16 @@ class GameController(PausingGames):
                 return self._end()
             case forgotten:
                 assert_never(forgotten)
+
+    def _let_in(self, command: Joins) -> list[Result]:
+        """Let a new person join; if the name is that of somebody who was away, they are back."""
+        told = self._let_join(command)
+        match told:
+            case [StaffNote(kind="known already", about=person)]:
+                back = self.plan.do(ComesIn(person))
+                return back if back == [StaffNote("comes", person)] else told
+            case _:
+                return told
 
     def note(self, did: StaffActionKind, *, by: str = "", **what: Any) -> None:
         """Log what staff did (see `Supervision.note`), unless the log is full."""

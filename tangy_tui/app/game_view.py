@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 class GameView:
     """A snapshot of a game: who controls it, where it is played, and its scene.
 
-    `game` is its id in the log, `number` counts from 1 in this run, `robot` is the overall state of
-    the robot with its `cause`, `pose` the position of the robot (m, m), if there is a real one.
+    `game` is its id in the log, `number` counts from 1 over all games of the log, `robot` is the
+    overall state of the robot with its `cause`, `pose` the position of the robot (m, m), if there
+    is a real one.
     """
 
     driver: str
@@ -72,7 +73,7 @@ def view_of(control: GameController) -> GameView | None:
             game=supervision.game.game,
             activity=world.activity.name,
             world=world.played_in,
-            number=supervision.games,
+            number=supervision.game.log.number(supervision.game.game),
             step=supervision.steps,
             phase=control.phase,
             robot=robot,

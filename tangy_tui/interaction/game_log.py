@@ -27,9 +27,10 @@ class GameLog:
 
     def number(self, game: str) -> int:
         """Return the number of a logged game, counted from 1 over all games of the log."""
-        for event in self._store.events(GameBeginning, after=self._read):
-            self._read = event.seq
-            self._numbers.setdefault(event.record.game, len(self._numbers) + 1)
+        if game not in self._numbers:
+            for event in self._store.events(GameBeginning, after=self._read):
+                self._read = event.seq
+                self._numbers.setdefault(event.record.game, len(self._numbers) + 1)
         return self._numbers[game]
 
     def begin(self) -> None:

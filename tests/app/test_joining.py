@@ -147,8 +147,9 @@ def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> No
     (game,) = session.replays
     assert game.game.people == again.world.people and not log_problems(workspace.store)
     page, lines = session_page(session), list(session_lines(session))
-    for done in ("came", "left"):
-        assert any(f"Ada: Berta {done}" in line for line in lines) and f"Berta {done}" in page
+    for done in ("is here", "has left"):
+        assert any(f"Ada: told Tangy that Berta {done}" in line for line in lines)
+        assert f"told Tangy that Berta {done}" in page
     # the crash interrupted the game, not the join
     assert sum("after an interruption" in line for line in lines) == 1
     joined = [e.record for e in workspace.store.events(GameChange) if e.record.what == "joined"]
@@ -271,6 +272,17 @@ def test_nobody_changes_tables_for_a_person_who_joins(taught: Path) -> None:
 def admission(game: LiveGame) -> Admission:
     assert game.control.admission is not None
     return game.control.admission
+
+
+def test_adding_somebody_who_was_away_brings_them_back(taught: Path) -> None:
+    workspace = Workspace(taught)
+    game = LiveGame(workspace)
+    game.play(2)
+    game.control.apply(GoesAway("user4"))
+    assert game.told(Joins(workspace.names["user4"])) == StaffNote("comes", "user4")
+    assert not game.world.away and not game.control.joined
+    assert game.told(Joins(workspace.names["user4"])) == StaffNote("known already", "user4")
+    workspace.close()
 
 
 def test_a_person_for_whom_staff_asked_after_the_last_step_asks_after_a_crash(taught: Path) -> None:

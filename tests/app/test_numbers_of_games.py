@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_tui.app.game_view import view_of
 from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameBegun
@@ -30,3 +31,5 @@ def test_a_game_has_the_number_of_the_log_in_each_session(
         assert game_lines(begun, control.supervision, str) == [begun_words(number)]
         game = read_games(workspace.store)[-1]
         assert (game.id, game.number) == (begun.game, number)
+        view = view_of(control)
+        assert view is not None and view.number == number
