@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.game_records import GameChange
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
@@ -91,8 +92,11 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
     asked: dict[str, float] = {}
     requests = replay.requests
     before: Done | None = None
+    wins = _wins(replay)
     for done in replay.done:
         _count_visit(found, done, "" if before is None else before.after.place)
+        if done.number in wins and done.after.place in found:
+            found[done.after.place].won += 1
         if before is not None:
             _count_between(replay, asked, done, requests[before.number])
         before = done
@@ -114,12 +118,26 @@ def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
     return added
 
 
+def _wins(replay: GameReplay) -> set[int]:
+    """Return the numbers of the steps that won; a win that is celebrated again counts once."""
+    wins, celebrated = set[int](), set[str]()
+    for moment in replay.moments:
+        match moment.what:
+            case GameChange(what="played on"):
+                celebrated.clear()
+            case Done(wins=True) as done if done.after.place not in celebrated:
+                celebrated.add(done.after.place)
+                wins.add(done.number)
+            case _:
+                pass
+    return wins
+
+
 def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
     """Count a step for the person the robot was with, and the arrival at a person."""
     there = found.get(done.state.place)
     if there is not None and done.after.place == there.id:
         there.seconds += done.over - done.begun
-        there.won += done.wins
         if done.target == there.id and done.completed:
             there.helped[done.behaviour] += 1
     came = found.get(done.after.place)

@@ -69,6 +69,20 @@ def replay_of(*states: ActivityState, behaviour: str = "b", target: str = "") ->
     return found
 
 
+@pytest.mark.parametrize(("plays_on", "won"), [(False, 1), (True, 2)])
+def test_a_win_that_is_celebrated_again_counts_once(plays_on: bool, won: int) -> None:
+    replay = replay_of(*(state(place) for place in ("ann", "ann", "bob", "bob", "ann", "ann")))
+    moments = list[Moment]()
+    for moment in replay.moments:
+        assert isinstance(moment.what, Done)
+        moments.append(replace(moment, what=replace(moment.what, wins=moment.what.number % 2 == 1)))
+        if plays_on and moment.what.number == 3:
+            change = GameChange(game="g1", steps=3, what="played on", person="bob", by="tangy")
+            moments.append(replace(moment, what=change))
+    ann, bob = attention_in(replace(replay, moments=moments)).values()
+    assert (ann.won, bob.won) == (won, 1)
+
+
 def test_a_request_during_a_step_is_counted() -> None:
     replay = replay_of(state(FRONT), state(FRONT), state("ann", ["ann"]))
     asking = replace(replay.done[1], state=state(FRONT, ["ann"]))
