@@ -38,7 +38,8 @@ class FeedbackEntry:
 
     `number` counts from 1 and is stable. `request` is the uuid of the request: late feedback refers
     to an earlier line, every other line to itself. `at` is the time of the request, and `why` the
-    reason for which it is void. `settled`: another line has the answer to this request.
+    reason for which it is void. `settled`: another line has the answer to this request. `followed`:
+    the person did it, be it after the activity's patience.
     """
 
     number: int
@@ -53,6 +54,7 @@ class FeedbackEntry:
     void: bool
     why: str
     settled: bool = False
+    followed: bool = False
     world: GameWorld | None = None
     """The world of a line that belongs to no game."""
 
@@ -252,11 +254,14 @@ def _entry(
     back: frozenset[str],
 ) -> FeedbackEntry:
     request, game, world = event.uuid, None, None
+    followed = event.complied is True
     match event.record:
         case FeedbackGiven() as given:
             request, game = given.of or event.uuid, given.game
             world = given.world if game is None else None
-        case (ResponseGiven() | ResponseAwaited()) as one:
+        case ResponseGiven() as one:
+            game, followed = one.game, followed or one.followed is True
+        case ResponseAwaited() as one:
             game = one.game
     return FeedbackEntry(
         number=number,
@@ -270,6 +275,7 @@ def _entry(
         late=isinstance(event.record, FeedbackGiven),
         void=event.uuid in voids or event.uuid in back,
         why=voids.get(event.uuid, "taken back" if event.uuid in back else ""),
+        followed=followed,
         world=world,
     )
 

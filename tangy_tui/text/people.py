@@ -106,7 +106,8 @@ def entry_words(entry: FeedbackEntry) -> str:
     """Tell the response to one request."""
     if entry.complied is None:
         return "answered later" if entry.settled else "no response yet"
-    words = "did it" if entry.complied else "would rather not"
+    late = "did it a little late" if entry.followed else "would rather not"
+    words = "did it" if entry.complied else late
     if entry.late:
         words += ", said later"
     if entry.void:

@@ -22,6 +22,7 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.text.people import entry_words
 from tests.support.append_body import append_body
 from tests.support.laws import tried
 
@@ -352,3 +353,18 @@ def test_feedback_can_be_read_from_a_read_only_log(tmp_path: Path) -> None:
         assert PersonModels(nothing, STRATEGIES).recall("p").beliefs["warm"] == Beta()
         with pytest.raises(TangyError):
             Feedback(nothing).switch("p", "warm", False, STRATEGIES)
+
+
+@pytest.mark.parametrize(
+    ("complied", "followed", "told"),
+    [(True, True, "did it"), (False, True, "did it a little late"),
+     (False, False, "would rather not"), (False, None, "would rather not")],
+)  # fmt: skip
+def test_somebody_who_was_slow_did_not_refuse(
+    log: Store, complied: bool, followed: bool | None, told: str
+) -> None:
+    person = next(fresh)
+    body = {"game": "g", "followed": followed, "seconds": 19.0}
+    append_body(log, "response", body, person=person, strategy="warm", complied=complied)
+    (entry,) = Feedback(log).history(person)
+    assert entry.followed is bool(followed) and entry_words(entry) == told

@@ -159,7 +159,7 @@ def test_a_response_is_voided_by_number_and_restored_by_undo(people: Tangy) -> N
 def test_void_prints_the_response_and_the_reason(people: Tangy) -> None:
     last, first = people("void", "Rosa").stdout, people("void", "Rosa", 1).stdout
     when = r"\d+ \w+ \d{4} \d\d:\d\d"
-    assert re.match(rf"Void: number 16, scarcity, {when}, would rather not\.\nNow: ", last)
+    assert re.match(rf"Void: number 16, scarcity, {when}, did it a little late\.\nNow: ", last)
     assert re.match(rf"Void: number 1, praise, {when}, did it\.\nNow: ", first)
     said = people("feedback", "Rosa", "suggestion", "yes").stdout
     assert re.match(rf"Said: number 18, suggestion, {when}, did it, said later\.\nNow: ", said)
