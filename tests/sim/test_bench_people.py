@@ -277,6 +277,21 @@ class TestAnInterruptedGame:
             assert set(sitter.player.cells(sitter.player.marked & ~free)) == there
             assert not sitter.player.has_error
 
+    def test_nobody_gets_the_card_of_another_person(self) -> None:
+        world = bench(1)
+        first = {person: one.card for person, one in world.people.sitters.items()}
+        *_, new = first
+        cards = dict(zip([*first][:-1], [*first.values()][1:], strict=True))  # has new's card
+        for _ in range(2):
+            tell(world.people, {"called": self.CALLED, "cards": cards})
+        there = [one.card for one in world.people.sitters.values()]
+        assert len({*there}) == len(there) and world.people.sitters[new].card != first[new]
+
+    def test_mistakes_and_requests_come_as_in_the_middle_of_a_game(self) -> None:
+        people = self.resumed().people
+        assert people.game.opened
+        assert all(one.player.slips_at > len(self.CALLED) for one in people.sitters.values())
+
     def test_people_who_asked_still_ask(self) -> None:
         assert self.resumed(asking=["user3"]).people.asking == ("user3",)
 

@@ -8,7 +8,7 @@ people's time advances with what they hear: by one call for each behaviour befor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from random import Random
 from typing import assert_never
@@ -87,25 +87,35 @@ class People:
         """Seat people, each with a new card."""
         deck, dealt = self.activity.deck, list[int]()
         while len(dealt) < len(self.ids):
-            card = 1 + int(self._cards() * LAST_CARD)
-            if card not in dealt:
-                dealt.append(card)
+            dealt.append(self._new_card(dealt))
         return {
             person: Sitter(SimulatedUser(person, deck, numbers_of(deck, card, USUAL_SEED)), card)
             for person, card in zip(self.ids, dealt, strict=True)
         }
 
+    def _new_card(self, dealt: Collection[int]) -> int:
+        """Draw a card that nobody has."""
+        while True:
+            card = 1 + int(self._cards() * LAST_CARD)
+            if card not in dealt:
+                return card
+
     def resume(self, cards: Mapping[str, int], called: Sequence[int]) -> None:
         """Go on with an interrupted game, in which everybody has marked what was called.
 
         Args:
-            cards: the card of each person; others keep theirs.
+            cards: the card of each person; others keep theirs, or get a new one if somebody has it.
             called: the numbers that count as called.
         """
         deck = self.activity.deck
         self.game.called, self._calls, self._time = [*called], len(called), float(len(called))
+        dealt = set(cards.values())
         for person, sitter in self.sitters.items():
-            sitter.card = cards.get(person, sitter.card)
+            if person in cards:
+                sitter.card = cards[person]
+            elif sitter.card in dealt:
+                sitter.card = self._new_card(dealt)
+            dealt.add(sitter.card)
             player = SimulatedUser(person, deck, numbers_of(deck, sitter.card, USUAL_SEED))
             player.catch_up(called)
             player.slips_at = self._calls + waiting_calls(self._uniform, self.users.slip)
