@@ -23,7 +23,9 @@ class KnownCards:
             match note.did:
                 case "cards dealt":
                     pairs = (pair.rpartition(" ") for pair in note.detail.split(", "))
-                    given, seen = {who: int(card) for who, _, card in pairs if _digits(card)}, {}
+                    given = {who: int(card) for who, _, card in pairs if _digits(card)}
+                    taken = {*given.values()}  # a resumed game notes what was given once more
+                    seen = {o: c for o, c in seen.items() if o not in given and c not in taken}
                 case "card given" | "card learnt":
                     card = int(note.detail) if _digits(note.detail) else None
                     for known in (given, seen):

@@ -25,5 +25,11 @@ def test_the_newest_note_says_whose_card_it_is() -> None:
     assert known == KnownCards({"user1": 31}, {"user4": 40})
 
 
+def test_a_resumed_game_knows_the_cards_that_were_seen_before() -> None:
+    dealt = noted("cards dealt", detail="user3 17")
+    known = KnownCards.of([dealt, noted("card learnt", "user2", "31"), dealt])
+    assert known == KnownCards({"user3": 17}, {"user2": 31})
+
+
 def test_without_notes_no_card_is_known() -> None:
     assert KnownCards.of([noted("cards dealt"), noted("noted", detail="user1 12")]) == KnownCards()
