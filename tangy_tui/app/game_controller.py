@@ -298,10 +298,15 @@ class GameController(PausingGames):
         told = self._let_join(command)
         match told:
             case [StaffNote(kind="known already", about=person)]:
-                back = self.plan.do(ComesIn(person))
-                return back if back == [StaffNote("comes", person)] else told
+                pass
+            case [StaffNote(kind="which person", people=(person,))]:  # a first name
+                pass
             case _:
                 return told
+        if self.joined or command.seat or command.table:
+            return told
+        back = self.plan.do(ComesIn(person))
+        return back if back == [StaffNote("comes", person)] else told
 
     def note(self, did: StaffActionKind, *, by: str = "", **what: Any) -> None:
         """Log what staff did (see `Supervision.note`), unless the log is full."""

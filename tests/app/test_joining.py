@@ -285,6 +285,19 @@ def test_adding_somebody_who_was_away_brings_them_back(taught: Path) -> None:
     workspace.close()
 
 
+def test_a_first_name_brings_back_who_was_away_but_not_to_another_seat(taught: Path) -> None:
+    workspace = Workspace(taught)
+    hugo = "user3"
+    workspace.rename(workspace.find_person(hugo), "Hugo Meier")
+    game = LiveGame(workspace)
+    game.play(2)
+    game.control.apply(GoesAway(hugo))
+    assert game.told(Joins("Hugo", seat=1)).kind != "comes" and hugo in game.world.away
+    assert game.told(Joins("Hugo")) == StaffNote("comes", hugo)
+    assert game.told(Joins("Hugo")).kind == "which person"
+    workspace.close()
+
+
 def test_a_person_for_whom_staff_asked_after_the_last_step_asks_after_a_crash(taught: Path) -> None:
     workspace = Workspace(taught)
     game = LiveGame(workspace)
