@@ -48,10 +48,14 @@ class EndingGames:
         self.supervision.stopped_by_staff()
         self.robot.stop(why)
 
+    def hold(self, why: str) -> None:
+        """Abort the robot's current behaviour, and take no further step."""
+        self.stopped = True
+        self.break_off(why)
+
     def interrupt(self, patience: float = LEAVES_SECONDS) -> None:
         """Stop the robot, wait up to `patience` s for it, and leave the game to be resumed."""
-        self.stopped = True
-        self.break_off(PROGRAM_ENDS)
+        self.hold(PROGRAM_ENDS)
         if self.wait_for_turn(patience):
             self.supervision.interrupt()
 
@@ -64,8 +68,7 @@ class EndingGames:
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
         """Stop the robot, wait up to `patience` s for it, and log that the game was left."""
-        self.stopped = True
-        self.break_off()
+        self.hold(ENDED)
         if not self._turn.acquire(timeout=patience):
             return []
         try:

@@ -18,7 +18,8 @@ END = ("end", "end it", "with a report of it")
 DISCARD = ("discard", "discard it", "and play a new game")
 ENDED = "It was interrupted, and ended afterwards."
 """The logged reason for the end of such a game."""
-GOES_ON_LATER = "The game is not over: start Tangy again to go on with it."
+_LATER = "start Tangy again to go on with it."
+GOES_ON_LATER = f"The game is not over: {_LATER}"
 NONE = "No game was interrupted: there is nothing to go on with. Leave --resume out."
 BOTH = "Use either --resume or --discard."
 
@@ -35,7 +36,7 @@ def still_open_words(past: PastGame, calls: int) -> str:
 
 def to_be_resumed_words(past: PastGame, calls: int) -> str:
     """Tell, once the program has ended, that its game can be resumed."""
-    return f"The game is not over, after {_far(past, calls)}: start Tangy again to go on with it."
+    return f"The game is not over, after {_far(past, calls)}: {_LATER}"
 
 
 def _far(past: PastGame, calls: int) -> str:

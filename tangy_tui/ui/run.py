@@ -107,7 +107,6 @@ def run_playing(
     which then count as the robot's cameras; otherwise it is faster. Answers to Tangy's questions
     may be spoken if there are `ears`.
     """
-    begun = datetime.now(UTC)
     status = _run(
         workspace,
         lambda program: program.play(games, speed, seed, policy, teacher, injections, past),
@@ -117,7 +116,7 @@ def run_playing(
         sensors=sensors,
         live=sensors is not None,
     )
-    _tell_interrupted(workspace, SIMULATED, begun)
+    _tell_interrupted(workspace, SIMULATED)
     return status
 
 
@@ -178,14 +177,14 @@ def run_live(
     status = _run(workspace, start, ascii_only, ears)
     for line in played_lines(read_games(workspace.store), begun, report):
         print(plain(line))
-    _tell_interrupted(workspace, world, begun)
+    _tell_interrupted(workspace, world)
     return status
 
 
-def _tell_interrupted(workspace: Workspace, world: GameWorld, begun: datetime) -> None:
-    """Tell that a game that was played since a time is not over, and can be resumed."""
+def _tell_interrupted(workspace: Workspace, world: GameWorld) -> None:
+    """Tell that a game is not over, and can be resumed."""
     past = find_interrupted(workspace, world)
-    if past is not None and past.at >= begun:
+    if past is not None:
         print(plain(to_be_resumed_words(past, len(past.called(workspace.activity)))))
 
 

@@ -245,6 +245,14 @@ def test_an_ended_game_accepts_no_commands(live: Played) -> None:
     assert live.control.begin() and live.link.told[-1] == "release"
 
 
+def test_no_step_follows_while_the_program_ends(live: Played) -> None:
+    live.next()
+    live.control.hold("SIGHUP was received")
+    assert live.link.told[-1] == "stop: SIGHUP was received"
+    assert live.phase == "stopped" and live.next() == []
+    assert not [a for a in live.workspace.store.events(StaffAction) if a.record.did == "stopped"]
+
+
 def test_an_interrupted_game_stops_the_robot_and_can_be_resumed(live: Played) -> None:
     live.next()
     live.control.interrupt()

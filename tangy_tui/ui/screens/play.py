@@ -90,6 +90,7 @@ class PlayScreen(PlayStaff):
         self._past = past
         self.tally = Tally()
         self.skipping = False
+        self._ended = False  # whether staff chose to leave the game
         self._left = 0.0  # s left of a drive that STOP or a fault interrupted
         self._halted = False
         self._leaving = False
@@ -181,6 +182,7 @@ class PlayScreen(PlayStaff):
         leaves = await self.app.push_screen_wait(dialog)
         self._leaving = False
         if leaves:
+            self._ended = True
             self.control.note("ended")
             self.control.end_joined(ENDED)
             await self._come_to_rest()
@@ -199,13 +201,14 @@ class PlayScreen(PlayStaff):
         if not self.control.joined:  # an onlooker may stop the robot while it is switched on again
             self._workspace.door.detach(self.control)
         if not self._supervision.over:
-            self.control.interrupt()
+            end = self.control.abandon if self._ended else self.control.interrupt
+            end()
         self._voice.hush()
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: no further behaviour runs until staff continue."""
         if getattr(self.app, "leaving", False):
-            self.control.break_off(message.reason)  # nobody pressed STOP
+            self.control.hold(message.reason)  # nobody pressed STOP
             return
         self.control.apply(StopRobot())  # before drawing
         self._show_stopped()
