@@ -103,7 +103,10 @@ class ChangePace:
 
 @dataclass(frozen=True, slots=True)
 class ClaimCard:
-    """Check a card against all called numbers; `person` is the id of its owner."""
+    """Check a card against all called numbers; `person` is the id of its owner.
+
+    Card 0 is the person's own, if it is known.
+    """
 
     card: int
     person: str = ""
@@ -345,6 +348,7 @@ RefusalKind = Literal[
     "no cards",
     "no such card",
     "whose card",
+    "which card",
     "not called",
     "nothing to void",
     "not halted",

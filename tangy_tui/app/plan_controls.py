@@ -61,8 +61,8 @@ class GamePlanControls:
                 return [self._pace(world, next_pace(world.pace, -by))]
             case TakeBackCall(label):
                 return self._take_back(world, label)
-            case ClaimCard(card, person):
-                return self._claim(world, card, person)
+            case ClaimCard():
+                return self._claim(world, command)
             case ChoosePatterns(names):
                 return self._choose(world, names)
             case LetWin(several, visits):
@@ -94,8 +94,8 @@ class GamePlanControls:
         match command:
             case TakeBackCall(label):
                 return self._nothing_called(label)
-            case ClaimCard(card, person) if not self._idle:
-                return self._no_card(card, person)
+            case ClaimCard() if not self._idle:
+                return self._no_card(self.with_card(command))
             case ComesIn(person) | GoesAway(person):
                 return self._nobody(person)
         return None
@@ -105,10 +105,19 @@ class GamePlanControls:
         plays = gathering is not None and person in gathering.people
         return None if plays else StaffNote("not playing", person)
 
-    def _no_card(self, card: int, person: str) -> StaffNote | None:
+    def with_card(self, claim: ClaimCard) -> ClaimCard:
+        """Return a claim with the number of the person's card, if it is known and was not given."""
+        if claim.card or self.world is None:
+            return claim
+        return replace(claim, card=self.world.known_cards.get(claim.person, 0))
+
+    def _no_card(self, claim: ClaimCard) -> StaffNote | None:
         """Return why a claim cannot be checked: there is no such card, or nobody here has it."""
+        card, person = claim.card, claim.person
         if (world := self.world) is None:
             return StaffNote("no cards")
+        if person and not card:
+            return StaffNote("which card", person)
         known = world.known_cards
         cards = ", ".join(map(str, sorted(known.values())))
         if world.numbers_on(card) is None:
@@ -138,10 +147,12 @@ class GamePlanControls:
         self._note("took back", detail=deck.label(number), taken_back=number)
         return [StaffNote("call taken back", deck.label(number)), changed]
 
-    def _claim(self, world: PlannedGame, card: int, person: str) -> list[Result]:
+    def _claim(self, world: PlannedGame, claim: ClaimCard) -> list[Result]:
         """Check a card against all calls, and tell the group the result."""
-        if (refused := self._no_card(card, person)) is not None:
+        claim = self.with_card(claim)
+        if (refused := self._no_card(claim)) is not None:
             return [refused]
+        card, person = claim.card, claim.person
         wins = world.wins(card)
         rules, present = world.activity.rules, world.patterns.present
         pattern = present or next(iter(rules.patterns), None)

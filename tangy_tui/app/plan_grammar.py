@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from contextlib import suppress
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, GameRules
@@ -39,6 +40,7 @@ _CARD = re.compile(
     r"|card (?:number )?#?(\d{1,6}) (?:is|belongs to) (.+?)(?:['\u2019]s)?",
     re.I,
 )
+_CLAIMS = re.compile(r"(.+?) (?:has|calls|says|shouts|claims|got)(?: a| an)? (.+)", re.I)
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
@@ -88,13 +90,28 @@ def read_planned(
 
 
 def _claim(said: str, find_person: Callable[[str], str], rules: GameRules) -> GameCommand | None:
-    """Parse a claim: the activity's word for it, a card's number, and perhaps a name."""
+    """Parse a claim: the activity's word for it, with a card's number, a name, or both."""
     word, _, rest = said.partition(" ")
-    if not rules.claim or word.casefold() not in (CHECK, rules.claim.casefold()):
+    if not rules.claim:
         return None
+    if word.casefold() not in (CHECK, rules.claim.casefold()):
+        return _claim_of(said, find_person, rules.claim)
     number, _, person = rest.partition(" ")
     digits = number.strip("#,:")
+    if rest and not digits.isdecimal():
+        with suppress(TangyError):
+            return ClaimCard(0, find_person(re.sub(r"^(?:for|by|of|from) ", "", rest)))
     if not (digits.isascii() and digits.isdecimal() and len(digits) <= 6):
         wrong = f"'{rest[:60]}'" if rest else f"'{word}' alone"
         raise TangyError(plain(f"{wrong} is no number of a card. Say it as in: {word} 17."))
     return ClaimCard(int(digits), find_person(person) if person.strip() else "")
+
+
+def _claim_of(said: str, find_person: Callable[[str], str], word: str) -> ClaimCard | None:
+    """Parse a sentence such as "Rosa has bingo"; None if nobody has the name."""
+    found = _CLAIMS.fullmatch(said)
+    if found is None or found[2].casefold() != word.casefold():
+        return None
+    with suppress(TangyError):
+        return ClaimCard(0, find_person(found[1]))
+    return None

@@ -77,10 +77,12 @@ class TypedConfirmation(Generic[CommandT]):
 class ConfirmingStaff(TypedConfirmation[GameCommand]):
     """Asks staff whether they mean a command; the game is held while a question is open."""
 
-    def __init__(self, controller: GameController, yes: TypedYes, write: Write) -> None:
-        """Ask about commands for a controller."""
+    def __init__(
+        self, controller: GameController, name: Callable[[str], str], yes: TypedYes, write: Write
+    ) -> None:
+        """Ask about commands for a controller; `name` returns a person's name."""
         super().__init__(yes, write)
-        self._controller = controller
+        self._controller, self._name = controller, name
         self._hold = ExitStack()
 
     def ask(self, command: GameCommand, typed: SimpleQueue[str | None] | None) -> bool:
@@ -93,7 +95,7 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
         asked = needed_confirmation(command, self._controller) if self._yes.typed else None
         if asked is not None:
             self._hold.enter_context(self._controller.holding())
-            self._put(asked.command, confirmation_words(asked), typed)
+            self._put(asked.command, confirmation_words(asked, self._name), typed)
         return asked is not None
 
     def drop(self) -> None:

@@ -105,7 +105,7 @@ class StaffLines:
         self._progress = ProgressLines(controller, name)
         telling = self._telling = GameTelling(controller, name, write, self._progress, also)
         telling.stopped = before is not None and before._telling.stopped
-        self._sure = ConfirmingStaff(controller, self._yes, telling.write)
+        self._sure = ConfirmingStaff(controller, name, self._yes, telling.write)
         self._freezes = FreezeLines(controller, self._sure, telling.write, watch)
         self._waits = ScriptWaits(controller, self._tell_progress)
         self._inquiries = Inquiries(controller, name, demonstrations)

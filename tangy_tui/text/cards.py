@@ -11,7 +11,6 @@ def card_title(name: str) -> str:
 WHOSE = "Whose card is it?"
 KEY_HINT = "Press {whose_card} to say whose it is."
 KNOWN, UNKNOWN = "has card {}", "card not known yet"
-IN_SIGHT = "was in sight last"
 ANOTHER = "another one"
 BY_NUMBER, TYPE_NUMBER = "a number", "you type the number on the card"
 NUMBER_DETAIL = "Type the number that is printed on the card."
@@ -24,6 +23,11 @@ LEARNT_NEXT = "Tangy takes the next card it sees there"
 def which_words(name: str) -> str:
     """Ask which card a person has."""
     return f"Which card does {name} have?"
+
+
+def in_sight_words(owner: str) -> str:
+    """Describe a card that Tangy saw last, with its owner; "" if unknown."""
+    return f"{owner}'s card, was in sight last" if owner else "was in sight last"
 
 
 def other_card_words(name: str) -> str:

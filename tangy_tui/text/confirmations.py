@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, assert_never
 
 from tangy_tui.text import freezes, teaching
@@ -23,8 +24,9 @@ class ConfirmationWords(NamedTuple):
         return f"{self.question} {self.detail} Type {key}: {self.yes}. N: {self.no}."
 
 
-def confirmation_words(asked: Confirmation) -> ConfirmationWords:
-    """Return the words of a question before a command."""
+def confirmation_words(asked: Confirmation, name: Callable[[str], str]) -> ConfirmationWords:
+    """Return the words of a question before a command; `name` returns a person's name."""
+    people = [*map(name, asked.people)]
     match asked.kind:
         case "end":
             return ConfirmationWords(
@@ -46,6 +48,27 @@ def confirmation_words(asked: Confirmation) -> ConfirmationWords:
             )
         case "go on":
             return ConfirmationWords("Go on?", freezes.DETAIL, freezes.GO_ON, freezes.STAY)
+        case "card of another":
+            return ConfirmationWords(
+                f"Card {asked.about} is {people[1]}'s. Does {people[0]} have it now?",
+                f"Tangy then knows no card of {people[1]}.",
+                f"it is {people[0]}'s",
+                "leave it",
+            )
+        case "claim of another":
+            return ConfirmationWords(
+                f"Card {asked.about} is {people[1]}'s. Check it for {people[0]}?",
+                f"If the card wins, {people[0]} wins. Tangy tells everybody.",
+                f"check it for {people[0]}",
+                "leave it",
+            )
+        case "claim away":
+            return ConfirmationWords(
+                f"Card {asked.about} is {people[0]}'s, who is not here. Check it?",
+                f"If the card wins, {people[0]} wins. Tangy tells everybody.",
+                "check it",
+                "leave it",
+            )
         case forgotten:
             assert_never(forgotten)
 
@@ -62,3 +85,8 @@ def again_confirmation(first: int, last: int) -> ConfirmationWords:
 
 
 NOT_DONE = "Not done."
+
+
+def called_meanwhile(label: str) -> str:
+    """Tell that a number was called while staff were asked about an earlier one."""
+    return f"Tangy has called {label} since then. {label} stays."

@@ -172,6 +172,9 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
                 f"Tangy does not know whose card {about} is. Claim it again, with their name."
                 f"{_cards(noted)}"
             )
+        case "which card":
+            who = name(about)
+            return f"Tangy does not know {who}'s card. Add its number: check 17 {who}."
         case "asked for":
             return f"{name(about)} asks for help."
         case "told":

@@ -9,13 +9,24 @@ from pathlib import Path
 import pytest
 
 from tangy_tui.app.confirmations import needed_confirmation
-from tangy_tui.app.game_commands import EndGame, GoOn, Pause, StopRobot, TakeBackCall
+from tangy_tui.app.game_commands import (
+    ClaimCard,
+    EndGame,
+    GoesAway,
+    GoOn,
+    HasCard,
+    Pause,
+    StaffNote,
+    StopRobot,
+    TakeBackCall,
+)
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.terminal_session import TerminalSession
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.staff import StaffLines
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.policies import load_policy
+from tests.app.test_interruption import Robot
 
 PATIENCE = 20.0  # s
 
@@ -170,3 +181,41 @@ def test_a_game_that_is_over_ends_without_a_question(control: GameController) ->
     assert needed_confirmation(EndGame(), control) is not None
     control.apply(EndGame())
     assert needed_confirmation(EndGame(), control) is None
+
+
+def test_the_card_of_another_person_needs_a_yes_that_names_them(workspace: Workspace) -> None:
+    control = (robot := Robot(workspace)).control
+    robot.world.cards.dealt.deal({"user1": 17, "user2": 31})
+    assert needed_confirmation(HasCard("user1", 17), control) is None
+    assert needed_confirmation(HasCard("user1", 40), control) is None
+    asked = needed_confirmation(HasCard("user1", 31), control)
+    assert asked is not None and asked.kind == "card of another"
+    assert (asked.about, asked.people) == ("31", ("user1", "user2"))
+
+
+def test_a_claim_asks_if_the_card_is_of_another_person(control: GameController) -> None:
+    assert needed_confirmation(ClaimCard(2), control) is None
+    assert needed_confirmation(ClaimCard(2, "user2"), control) is None
+    assert needed_confirmation(ClaimCard(99, "user2"), control) is None  # which is refused
+    asked = needed_confirmation(ClaimCard(2, "user1"), control)
+    assert asked is not None and asked.kind == "claim of another"
+    assert (asked.about, asked.people) == ("2", ("user1", "user2"))
+
+
+@pytest.mark.parametrize("claim", [ClaimCard(2), ClaimCard(0, "user2"), ClaimCard(2, "user2")])
+def test_a_claim_asks_if_the_person_is_away(control: GameController, claim: ClaimCard) -> None:
+    assert needed_confirmation(claim, control) is None
+    control.apply(GoesAway("user2"))
+    asked = needed_confirmation(claim, control)
+    assert asked is not None and asked.kind == "claim away"
+    assert (asked.command, asked.people) == (ClaimCard(2, claim.person), ("user2",))
+
+
+def test_a_claim_by_name_is_of_the_persons_own_card(workspace: Workspace) -> None:
+    control = (robot := Robot(workspace)).control
+    assert control.refuses(ClaimCard(0, "user2")) == StaffNote("which card", "user2")
+    robot.world.cards.dealt.deal({"user2": 31})
+    assert control.refuses(ClaimCard(0, "user2")) is None
+    (told,) = control.apply(ClaimCard(0, "user2"))
+    assert isinstance(told, StaffNote)
+    assert (told.kind, told.about, told.people) == ("claim wrong", "31", ("user2",))

@@ -11,9 +11,10 @@ from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import GoOn, Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.text.cards import NO_NUMBER, TYPE_NUMBER
+from tangy_tui.text.cards import NO_NUMBER, TYPE_NUMBER, in_sight_words
 from tangy_tui.ui.dialogs.card_number import CardNumberDialog
 from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.widgets.log_view import LogView
 from tests.hw.links import LaidCard
@@ -47,6 +48,15 @@ def told(pilot: TangyPilot) -> str:
 def notes(workspace: Workspace) -> list[tuple[str, str, str]]:
     found = (event.record for event in workspace.store.events(StaffAction))
     return [(one.did, one.person, one.detail) for one in found]
+
+
+async def answer_about_owner(pilot: TangyPilot, workspace: Workspace, key: str) -> None:
+    """Answer the question about a card that user2 has; the question names them."""
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+    await shown(pilot, f"is {workspace.name('user2')}'s")
+    await pilot.pause(0.6)  # keys typed ahead do not count
+    await pilot.press(key)
+    await until_shown(pilot, lambda: not isinstance(pilot.app.screen, ConfirmDialog))
 
 
 async def shown(pilot: TangyPilot, text: str) -> None:
@@ -93,7 +103,9 @@ async def test_staff_can_assign_a_card(
         await shown(pilot, "has card 17")
         await pilot.press("enter")
         await shown(pilot, f"Which card does {workspace.name('user1')} have?")
+        await shown(pilot, in_sight_words(workspace.name("user2")))
         await pilot.press("enter")
+        await answer_about_owner(pilot, workspace, "y")
         await until_shown(pilot, lambda: world.cards.dealt.card_of("user1") == 31)
         assert world.cards.dealt.card_of("user2") is None
         assert ("card given", "user1", "31") in notes(workspace)
@@ -132,6 +144,16 @@ async def test_staff_can_type_the_number_of_a_card_before_it_was_seen(
         await pilot.press(*"x", "enter")
         await shown(pilot, NO_NUMBER)
         await pilot.press("backspace", *"17", "enter")
+        await answer_about_owner(pilot, workspace, "n")
+        assert world.cards.dealt.card_of("user2") == 17
+        await pilot.press("b")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("enter")
+        await shown(pilot, TYPE_NUMBER)
+        await pilot.press("enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, CardNumberDialog))
+        await pilot.press(*"17", "enter")
+        await answer_about_owner(pilot, workspace, "y")
         await until_shown(pilot, lambda: world.cards.dealt.card_of("user1") == 17)
         assert world.cards.dealt.card_of("user2") is None
         assert ("card given", "user1", "17") in notes(workspace)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import ClassVar
 
 from textual import events
@@ -15,6 +16,9 @@ from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of
+
+SINCE_SECONDS = 0.5
+"""The interval between two looks at what happened since the question was asked."""
 
 
 class ConfirmDialog(Dialog[bool]):
@@ -34,8 +38,20 @@ class ConfirmDialog(Dialog[bool]):
         yes: str = "yes",
         no: str = "no",
         clock: Clock | None = None,
+        also: Callable[[], str] | None = None,
     ) -> None:
+        """Create the dialog.
+
+        Args:
+            question: the question.
+            detail: its consequences.
+            yes: the words for yes.
+            no: the words for no.
+            clock: the time in s, to drop keys that were typed ahead.
+            also: returns a sentence about what happened since, "" if nothing did.
+        """
         super().__init__(False)
+        self._also, self._since = also, ""
         self._question = clean(question)
         self._detail = clean(detail)
         self._words = (clean(yes), clean(no))
@@ -45,18 +61,33 @@ class ConfirmDialog(Dialog[bool]):
 
     def compose(self) -> ComposeResult:
         """Lay out question, detail and keys."""
+        self.yes_key = yes_key_of(self.app)
+        yield Static(self._content(), id="confirm", classes="box")
+
+    def _content(self) -> Content:
         parts: list[str | tuple[str, str] | Content] = [(self._question, "bold")]
         if self._detail:
             parts += ["\n\n", with_keys(self._detail, keymap_of(self.app))]
-        self.yes_key = yes_key_of(self.app)
+        if self._since:
+            parts += ["\n\n", self._since]
         yes, no = self._words
         for key, colour, words in ((self.yes_key.upper(), "$warning", yes), ("N", "$success", no)):
             parts += ["\n" if key == "N" else "\n\n", (key, f"{colour} bold"), f"  {words}"]
-        yield Static(Content.assemble(*parts), id="confirm", classes="box")
+        return Content.assemble(*parts)
 
     def on_mount(self) -> None:
         """Accept keys from now on."""
         self._keys.watch(self, self._clock)
+        if self._also is not None:
+            self.set_interval(SINCE_SECONDS, self._tell_since)
+
+    def _tell_since(self) -> None:
+        """Add what happened since the question was asked."""
+        assert self._also is not None  # noqa: S101 - else it is not called
+        since = clean(self._also())
+        if since != self._since:
+            self._since = since
+            self.query_one("#confirm", Static).update(self._content())
 
     def on_key(self, event: events.Key) -> None:
         """Answer with the key for yes, n or esc."""

@@ -279,7 +279,7 @@ class LiveScreen(PlayScreen):
     def action_whose_card(self) -> None:
         """Ask staff who owns a card."""
         if not self._supervision.over:
-            say = self._cards.say_whose(self.app, self.control, self._do)
+            say = self._cards.say_whose(self.app, self.control, self.do_sure)
             self.run_worker(say, name="card", group="ask")
 
     def action_tell(self) -> None:

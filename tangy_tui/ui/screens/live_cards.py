@@ -16,13 +16,13 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.cards import (
     ANOTHER,
     BY_NUMBER,
-    IN_SIGHT,
     KEY_HINT,
     KNOWN,
     LEARNT_NEXT,
     TYPE_NUMBER,
     UNKNOWN,
     WHOSE,
+    in_sight_words,
     other_card_words,
     which_words,
 )
@@ -88,7 +88,7 @@ class LiveCards:
             return
         options = [
             *(
-                Option(str(card), f"card {card}", IN_SIGHT)
+                Option(str(card), f"card {card}", in_sight_words(self._owner(card)))
                 for card in sorted({*self._cards.in_sight})
             ),
             Option(NUMBER, BY_NUMBER, TYPE_NUMBER),
@@ -104,3 +104,8 @@ class LiveCards:
             card = await app.push_screen_wait(CardNumberDialog(name(whom))) if typed else int(told)
             if card is not None:
                 do(HasCard(whom, card))
+
+    def _owner(self, card: int) -> str:
+        """Return the name of the person who has a card, "" if unknown."""
+        owner = self._cards.dealt.owner(card)
+        return self._workspace.name(owner) if owner else ""

@@ -40,7 +40,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
 from tangy_tui.learning.verification import Verified
-from tangy_tui.text.confirmations import confirmation_words
+from tangy_tui.text.confirmations import called_meanwhile, confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
 from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, SOMEBODY_NEW, WHO_IS_HERE, example_words
@@ -133,8 +133,16 @@ class PlayStaff(PlayPanels):
 
     async def _make_sure(self, asked: Confirmation) -> None:
         """Ask about a command; the game waits, also until it is carried out."""
-        words = confirmation_words(asked)
-        dialog = ConfirmDialog(words.question, words.detail, yes=words.yes, no=words.no)
+        words = confirmation_words(asked, self._workspace.name)
+
+        def called_since() -> str:
+            label = self.control.plan.called("") if asked.kind == "take back" else ""
+            return called_meanwhile(label) if label not in ("", asked.about, last) else ""
+
+        last = self.control.plan.called("")
+        dialog = ConfirmDialog(
+            words.question, words.detail, yes=words.yes, no=words.no, also=called_since
+        )
         with self.control.holding():
             if await self.app.push_screen_wait(dialog):
                 await self._carry_out(asked.command)
