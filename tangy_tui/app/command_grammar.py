@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import partial
 from typing import Literal, TypeAlias
 
@@ -218,7 +217,6 @@ MEANINGS: tuple[tuple[str, str], ...] = (
 )
 """The commands that help lists, with their meanings."""
 
-NEAR = 0.75  # least similarity for a suggestion: some commands move the robot
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
@@ -309,13 +307,6 @@ def command_reader(
     """Return a command parser for games of an activity; see `read_command`."""
     title = frozenset(activity.title.casefold().split())
     return partial(read_command, find_person=find_person, game=title, rules=activity.rules)
-
-
-def nearest_command(text: str) -> str:
-    """Return the command most similar to some words, "" if none is close."""
-    words = text.casefold().strip()
-    close = get_close_matches(words, [*FIXED, "stop", "autonomy", "drive"], 1, NEAR)
-    return close[0] if close else ""
 
 
 def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tangy_profiles.game_rules import GameRules
 from tangy_profiles.reading import plain
 
@@ -21,6 +23,8 @@ def example_words(rules: GameRules) -> str:
     return f"For example: pace 20{claim}{patterns}, take back, left Rosa, here Rosa."
 
 
-def not_known(words: str) -> str:
-    """Tell that words are not a command."""
-    return plain(f"Tangy does not know {words[:60]!r} here.")
+def not_known(words: str, near: Sequence[str] = ()) -> str:
+    """Tell that words are not a command, and which similar ones there are."""
+    meant = f" Did you mean: {', or '.join(near)}?" if near else ""
+    tab = " Tab types it." if len(near) == 1 else " Tab types the first, then the next."
+    return plain(f"Tangy does not know {words[:60]!r} here.{meant}{tab if near else ''}")

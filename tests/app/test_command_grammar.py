@@ -16,7 +16,6 @@ from tangy_tui.app.command_grammar import (
     MEANINGS,
     AgainFrom,
     Leave,
-    nearest_command,
     read_answer,
     read_command,
     read_inquiry,
@@ -146,11 +145,6 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
 def test_an_incomplete_command_is_refused_in_one_sentence(text: str, said: str) -> None:
     with pytest.raises(TangyError, match=said.replace(".", r"\.")):
         read(text)
-
-
-def test_the_nearest_command_is_named() -> None:
-    assert nearest_command("pasue") == "pause"
-    assert nearest_command("qwertz") == ""
 
 
 @given(st.text(max_size=60))

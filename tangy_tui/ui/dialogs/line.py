@@ -119,6 +119,10 @@ class LineDialog(Dialog[ValueT | None], Generic[ValueT]):
             wrong = self.query_one(".wrong", Static)
             wrong.update(str(error))
             wrong.add_class("-shown")
+            self.rejected(event.input)
+
+    def rejected(self, line: Input) -> None:
+        """Prepare the line for a correction; it keeps its text and cursor by default."""
 
     def on_key(self, event: events.Key) -> None:
         """Send letters to the line: none is a shortcut here."""

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from textual.binding import Binding, BindingType
+from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.command_grammar import Perform
@@ -19,12 +20,25 @@ from tangy_tui.ui.dialogs.line import LineDialog
 
 
 class CommandDialog(LineDialog[GameCommand | Perform]):
-    """Parses a command; a line that is none stays, with an explanation."""
+    """Parses a command; a line that is none stays, with an explanation and similar commands.
 
-    HELP = "Type what you want done, and press Enter. Esc goes back."
+    It is selected then, so that the next letter replaces it; Tab replaces it by a similar command.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("tab", "similar", "Similar command", show=False, priority=True)
+    ]
+    HELP = (
+        "Type what you want done, and press Enter. If Tangy does not know it, type something "
+        "else, correct it with the arrows, or press Tab for a similar command. Esc goes back."
+    )
 
     def __init__(
-        self, read: Callable[[str], GameCommand | Perform | None], begun: str, example: str
+        self,
+        read: Callable[[str], GameCommand | Perform | None],
+        begun: str,
+        example: str,
+        similar: Callable[[str], Sequence[str]],
     ) -> None:
         """Create the dialog.
 
@@ -32,16 +46,33 @@ class CommandDialog(LineDialog[GameCommand | Perform]):
             read: parses a command.
             begun: the initial text of the line.
             example: examples of commands.
+            similar: returns commands that are similar to words.
         """
         super().__init__(text.TITLE, example, text.KEYS, begun=begun)
-        self._read = read
+        self._read, self._similar = read, similar
+        self._near: list[str] = []  # the similar commands, in the order of the next Tabs
 
     def taken(self, line: str) -> GameCommand | Perform:
         """Parse a command; raises TangyError if the line is none."""
+        self._near = []
         command = self._read(line)
         if command is None:
-            raise TangyError(text.not_known(line))
+            self._near = [*self._similar(line)]
+            raise TangyError(text.not_known(line, self._near))
         return command
+
+    def rejected(self, line: Input) -> None:
+        """Select the line, so that the next letter replaces it."""
+        line.action_select_all()
+
+    def action_similar(self) -> None:
+        """Replace the line by the next similar command."""
+        if self._near:
+            command = self._near.pop(0)
+            self._near.append(command)
+            line = self.query_one(Input)
+            line.value = command
+            line.cursor_position = len(command)
 
 
 class TellDialog(LineDialog[str]):

@@ -36,6 +36,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
@@ -208,9 +209,13 @@ class PlayStaff(PlayPanels):
 
     async def _type(self, begun: str) -> None:
         activity = self._workspace.activity
+        names = [*self._workspace.names.values()]
         read = command_reader(activity, lambda who: self._workspace.find_person(who).id)
         dialog = CommandDialog(
-            lambda typed: read(typed) or read_screen(typed), begun, example_words(activity.rules)
+            lambda typed: read(typed) or read_screen(typed),
+            begun,
+            example_words(activity.rules),
+            lambda typed: nearest_commands(typed, names, activity.rules),
         )
         command = await self.app.push_screen_wait(dialog)
         if isinstance(command, Perform):

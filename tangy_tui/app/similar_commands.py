@@ -1,0 +1,107 @@
+"""Commands that are similar to words which are none: suggestions for staff who type in a game."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from difflib import get_close_matches
+
+from tangy_profiles.game_rules import NO_RULES, GameRules
+from tangy_tui.app.command_grammar import FIXED
+from tangy_tui.app.plan_grammar import CHECK
+
+NEAR = 0.75  # least similarity of a whole line: some commands move the robot
+NEAR_WORD = 0.8  # least similarity of a word
+MOST = 3
+"""The most suggestions."""
+
+COMMANDS: dict[str, tuple[str, ...]] = {
+    "slower": ("slow", "slower", "slowly"),
+    "faster": ("fast", "faster", "quick", "quicker", "quickly", "speed"),
+    "pause": ("pause", "break", "wait", "rest"),
+    "go on": ("continue", "resume", "proceed", "start"),
+    "call again": ("again", "repeat", "louder"),
+    "take back": ("undo", "wrong", "mistake", "back"),
+    "take over": ("control", "myself"),
+    "end": ("finish", "finished", "quit", "exit", "over", "end"),
+    "why": ("why", "reason"),
+    "several winners": ("winners",),
+    "visits on": ("visit", "visits"),
+}
+"""Words that hint at a command without a person."""
+
+ABOUT_PERSON: dict[str, tuple[str, ...]] = {
+    "ask for {name}": ("help", "helps", "needs", "need", "ask", "asks", "assist", "visit", "go"),
+    "left {name}": ("left", "gone", "leaves", "leave", "went", "away", "out", "remove"),
+    "here {name}": ("here", "back", "came", "come", "comes", "arrived", "in", "returned"),
+    "{claim} {name}": ("won", "wins", "win", "winner", "check", "finished", "claim"),
+    "{name} has card 17": ("card", "cards", "holds"),
+    "void {name}": ("void", "response", "answer"),
+}
+"""Words that hint at a command about a person."""
+
+NUMBERED: dict[str, tuple[str, ...]] = {
+    "pace {number}": ("pace", "seconds", "second", "every", "interval"),
+    "{claim} {number}": ("card", "check", "claim"),
+}
+"""Words that hint at a command with a number."""
+
+PLAIN_NUMBERS = {"pace {number}": 20, "{claim} {number}": 17}
+"""The numbers of examples."""
+
+
+def nearest_command(text: str) -> str:
+    """Return the command most similar to some words, "" if none is close."""
+    words = text.casefold().strip()
+    close = get_close_matches(words, [*FIXED, "stop", "autonomy", "drive"], 1, NEAR)
+    return close[0] if close else ""
+
+
+def nearest_commands(
+    text: str, names: Sequence[str] = (), rules: GameRules = NO_RULES
+) -> tuple[str, ...]:
+    """Return commands that words may mean, the likeliest first; () if none is close.
+
+    Args:
+        text: the words that are no command.
+        names: the names of the people.
+        rules: the choices that the activity gives staff.
+    """
+    claim = rules.claim or CHECK
+    found = [nearest_command(text), *_hinted(text, names, claim)]
+    allowed = [one for one in found if one and (rules.claim or not one.startswith(claim))]
+    return tuple(dict.fromkeys(allowed))[:MOST]
+
+
+def _hinted(text: str, names: Sequence[str], claim: str) -> Iterator[str]:
+    """Yield the commands that single words hint at; those about a person first."""
+    words = re.findall(r"[^\W_]+", text.casefold())
+    words = ["claim" if word == claim.casefold() else word for word in words]
+    number = next((word for word in words if word.isascii() and word.isdecimal()), "")
+    name = _named(words, names)
+    for command, hints in ABOUT_PERSON.items() if name else ():
+        if _hints(words, hints):
+            yield command.format(name=name, claim=claim)
+    if number or not name:
+        for command, hints in NUMBERED.items():
+            if _hints(words, hints):
+                yield command.format(number=number or PLAIN_NUMBERS[command], claim=claim)
+    for command, hints in COMMANDS.items() if not name else ():
+        if _hints(words, hints):
+            yield command
+
+
+def _hints(words: Sequence[str], hints: Sequence[str]) -> bool:
+    return any(
+        word in hints or (len(word) > len("back") and get_close_matches(word, hints, 1, NEAR_WORD))
+        for word in words
+    )
+
+
+def _named(words: Sequence[str], names: Sequence[str]) -> str:
+    """Return the name that words contain, in full or a word of it; "" if none or several do."""
+    spoken = f" {' '.join(words)} "
+    full = [name for name in names if f" {name.casefold()} " in spoken]
+    first = [name for name in names if set(name.casefold().split()) & set(words)]
+    found = full if len(full) == 1 else first
+    return found[0] if len(found) == 1 else ""
