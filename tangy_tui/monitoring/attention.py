@@ -92,10 +92,10 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
     asked: dict[str, float] = {}
     requests = replay.requests
     before: Done | None = None
-    wins = _wins(replay)
+    won = wins(replay)
     for done in replay.done:
         _count_visit(found, done, "" if before is None else before.after.place)
-        if done.number in wins and done.after.place in found:
+        if done.number in won and done.after.place in found:
             found[done.after.place].won += 1
         if before is not None:
             _count_between(replay, asked, done, requests[before.number])
@@ -118,19 +118,19 @@ def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
     return added
 
 
-def _wins(replay: GameReplay) -> set[int]:
+def wins(replay: GameReplay) -> set[int]:
     """Return the numbers of the steps that won; a win that is celebrated again counts once."""
-    wins, celebrated = set[int](), set[str]()
+    found, celebrated = set[int](), set[str]()
     for moment in replay.moments:
         match moment.what:
             case GameChange(what="played on"):
                 celebrated.clear()
             case Done(wins=True) as done if done.after.place not in celebrated:
                 celebrated.add(done.after.place)
-                wins.add(done.number)
+                found.add(done.number)
             case _:
                 pass
-    return wins
+    return found
 
 
 def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:

@@ -64,6 +64,12 @@ class Game:
     due: str = ""
     """The behaviour expected instead of the one that ended it; "" if the end was due."""
     rounds_left: int = 0
+    patterns: tuple[str, ...] = ()
+    """The patterns that staff chose before it began."""
+    absent: frozenset[str] = frozenset()
+    """Those who had not come yet when it began."""
+    joined: tuple[str, ...] = ()
+    """Those of `people` who joined it while it went on."""
     file: str = ""
     """The path of the activity's file, if it comes neither with Tangy nor with a package."""
 
@@ -179,6 +185,9 @@ def _game(
         other=len(faults) - sum(faults),
         ended=None if end is None else datetime.fromisoformat(end.at),
         last_seq=None if end is None else end.seq,
+        patterns=begun.patterns,
+        absent=frozenset(begun.absent),
+        joined=tuple(joined),
         file=begun.file,
         stopped=None if ending is None else ending.stopped,
         due="" if ending is None else ending.due,

@@ -182,6 +182,8 @@ class GameReplay:
     """Step and person of visits without a request."""
     staff_pauses: PauseTotal = field(default_factory=PauseTotal)
     """When staff paused the game or stopped the robot."""
+    staff_changes: list[Moment] = field(default_factory=list)
+    """The changes that `moments` tell as actions of staff, or not at all."""
     activity: Activity | None = None
     """The activity of the game; None if it is unknown."""
 
@@ -308,6 +310,10 @@ def _replay(
             case GameChange() as what if what.what in OF_ITS_OWN:
                 if what.what in ("visit", "won", "claimed"):
                     replay.unasked.add((step + 1, what.person))
+            case GameChange() as what:
+                at = max(acted, replay.seconds)
+                replay.staff_changes.append(Moment(at, step, event.at, what))
+                continue
             case GameResumed() if lets_in:
                 lets_in = False
                 continue

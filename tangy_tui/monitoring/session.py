@@ -17,8 +17,11 @@ from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.people_progress import Progress, people_progress
+from tangy_tui.monitoring.played_for import PlayedFor, played_for
 from tangy_tui.monitoring.player_facts import PlayerFacts, player_facts
+from tangy_tui.monitoring.presence import Stay, stays
 from tangy_tui.monitoring.replay import GameReplay, Noted, activities_of, read_replays
+from tangy_tui.monitoring.standstills import halts, interruptions
 
 SET_ASIDE = "set aside"
 """The remedy that leaves a person alone: staff should look after them."""
@@ -124,21 +127,47 @@ class Session:
         return PauseTotal.of(replay.staff_pauses for replay in self.replays)
 
     @property
+    def halts(self) -> PauseTotal:
+        """When faults halted the robot, in all."""
+        return PauseTotal.of(map(halts, self.replays))
+
+    @property
+    def interruptions(self) -> PauseTotal:
+        """When games were interrupted and resumed, in all; not part of `seconds`."""
+        return PauseTotal.of(map(interruptions, self.replays))
+
+    @property
+    def played_for(self) -> tuple[tuple[PlayedFor, ...], ...]:
+        """The patterns of each game, with their winners; empty if nobody can win in it."""
+        return tuple(map(played_for, self.replays))
+
+    @property
+    def stays(self) -> dict[str, tuple[Stay, ...]]:
+        """From when to when each person took part, by id."""
+        return stays(self.replays)
+
+    @property
     def timed(self) -> bool:
         """Whether the log has all durations."""
         return all(replay.timed for replay in self.replays)
 
     def to_json(self) -> dict[str, Any]:
         """Return the document that `--json` prints, without the words of its notes."""
+        here = self.stays
         return {
             "title": self.title,
             "seconds": self.seconds if self.timed else None,
             "staff_pauses": self.staff_pauses.to_json(),
+            "halts": self.halts.to_json(),
+            "interruptions": self.interruptions.to_json(),
             "games": [
                 {
                     **r.game.to_json(),
                     "seconds": r.seconds if r.timed else None,
                     "staff_pauses": r.staff_pauses.to_json(),
+                    "halts": halts(r).to_json(),
+                    "interruptions": interruptions(r).to_json(),
+                    "played_for": [one.to_json() for one in played_for(r)],
                 }
                 for r in self.replays
             ],
@@ -146,7 +175,10 @@ class Session:
             "faults": fault_rows(self.faults),
             "fault_list": [one.document() for one in self.faults],
             "questions": [one.document() for one in self.questions],
-            "people": [person.to_json() for person in self.people],
+            "people": [
+                {**one.to_json(), "present": [stay.to_json() for stay in here.get(one.id, ())]}
+                for one in self.people
+            ],
             "player_facts": [one.to_json() for one in self.player_facts],
             "look_after": [
                 {"fault": f.id, "name": f.name, "status": f.status, "advice": list(f.advice)}

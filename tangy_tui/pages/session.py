@@ -30,6 +30,7 @@ from tangy_tui.text.numbers import counted
 from tangy_tui.text.report import WORLD_WORDS, care_lines
 from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import note_words, status_words
+from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
 
 MOST_DRAWN = 24
@@ -126,12 +127,11 @@ def _sum(session: Session, *, full: bool) -> str:
 
 def _head(session: Session, *, full: bool) -> Iterator[str]:
     games = session.games
-    people = [person.name for person in session.people]
     policies = dict.fromkeys(game.policy for game in games)
     facts = [
         (say.FROM_TO, f"{day_and_time(games[0].at)}{_until(session)}"),
         (say.WHERE, ", ".join(dict.fromkeys(WORLD_WORDS[game.world] for game in games))),
-        (say.WHO, ", ".join(people) or say.NOBODY_NAMED),
+        (say.WHO, took_part(session) or say.NOBODY_NAMED),
         *([("Policy", ", ".join(policies))] if full else []),
         (say.HOW_LONG, say.how_long(session)),
     ]
@@ -139,6 +139,7 @@ def _head(session: Session, *, full: bool) -> Iterator[str]:
         facts.append((say.ENDED, ending_sentence(games[0])))
     else:
         facts.append((say.ALL_ENDED, all_endings(games)))
+    facts += played_for_rows(session)
     facts.append((say.FAULTS_HEAD, say.fault_sum(session.faults)))
     rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in facts)
     yield f"<dl>{rows}</dl>"
@@ -155,7 +156,11 @@ def _until(session: Session) -> str:
 
 def _care(session: Session) -> Iterator[str]:
     yield heading(say.CARE)
-    people = care_lines(attention(session.replays).values(), session.name, session.replays)
+    people = care_lines(
+        attention(session.replays).values(),
+        lambda person: with_stay(session, person),
+        session.replays,
+    )
     if people:
         lines = "".join(f"<li>{escape(line)}</li>" for line in people)
         yield f'<div class="care"><ul>{lines}</ul></div>'

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from tangy_tui.monitoring.fault import ENDINGS, OVER, Fault, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay
+from tangy_tui.monitoring.standstills import halts_in
 from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import status_words
 
@@ -125,16 +126,9 @@ def _axis(scale: Scale, height: float) -> Iterator[str]:
 
 def _halts(replay: GameReplay, scale: Scale, height: float) -> Iterator[str]:
     """Shade the time in which a critical fault halted the robot."""
-    begun: float | None = None
-    for moment in replay.moments:
-        kind = moment.what.move.kind if isinstance(moment.what, Moved) else ""
-        if kind == "halted":
-            begun = scale.at(moment.seconds, moment.step)
-        elif kind in ("cleared", "given up") and begun is not None:
-            yield _halt(scale, Span(begun, scale.at(moment.seconds, moment.step)), height)
-            begun = None
-    if begun is not None:
-        yield _halt(scale, Span(begun, scale.end), height)
+    for begun, over in halts_in(replay):
+        end = scale.end if over is None else scale.at(over.seconds, over.step)
+        yield _halt(scale, Span(scale.at(begun.seconds, begun.step), end), height)
 
 
 def _halt(scale: Scale, span: Span, height: float) -> str:

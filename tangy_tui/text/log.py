@@ -19,18 +19,23 @@ from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted, of_times, often
 from tangy_tui.text.player_facts import HEADING, in_game_words, player_lines
 from tangy_tui.text.report import (
+    FAULTS_SHORT,
+    WORLD_WORDS,
     attention_lines,
     call_lines,
     care_lines,
     changes_lines,
-    paused_words,
+    fault_outcome,
+    how_long_words,
     quiet_words,
     staff_action_lines,
 )
-from tangy_tui.text.results import progress_line
+from tangy_tui.text.results import progress_line, response_line
+from tangy_tui.text.session_page import CARE, HOW_LONG, NOBODY_NAMED, RESPONDED
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.staff_actions import action_line
-from tangy_tui.text.times import clock, day_and_time, length, time_of_day
+from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
+from tangy_tui.text.times import clock, day_and_time, time_of_day
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -48,6 +53,12 @@ def game_words(game: Game, activity: Activity | None = None) -> str:
         f"Game {game.number} ({game.id}), {played}, {game.world}, policy {game.policy}, "
         f"{day_and_time(game.at)}"
     )
+
+
+def staff_game_words(game: Game, activity: Activity | None) -> str:
+    """Name a game for staff: number, activity, time, and where it was played."""
+    played = game.activity if activity is None else activity.title
+    return f"Game {game.number}: {played}, {day_and_time(game.at)}, {WORLD_WORDS[game.world]}"
 
 
 def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> Iterator[str]:
@@ -134,17 +145,24 @@ def answer_words(answer: AnsweredRequest) -> str:
     return "did it a little late" if answer.followed else "would rather not just then"
 
 
-def session_lines(session: Session) -> Iterator[str]:
-    """Summarise a session: games, faults, people, and what needs attention."""
-    yield from _games_lines(session.replays)
+def session_lines(session: Session, *, full: bool = True) -> Iterator[str]:
+    """Summarise a session: games, faults, people, and what needs attention.
+
+    Args:
+        session: the session.
+        full: whether to add the details for researchers: ids, policies, steps, expectations.
+    """
+    yield from _games_lines(session.replays, full=full)
     if session.timed:
-        paused = paused_words(session.staff_pauses)
-        yield f"How long: {length(session.seconds)}{paused}."
-    yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
+        yield f"{HOW_LONG}: {how_long_words(session)}."
+    yield f"Took part: {took_part(session) or NOBODY_NAMED}."
+    yield from (f"{what}: {words}." for what, words in played_for_rows(session))
+    yield ""
+    yield from care_part(session)
+    yield ""
     yield from changes_lines(session.replays, session.name)
     found = attention(session.replays).values()
     yield from attention_lines(found, session.name, session.replays)
-    yield from care_lines(found, session.name, session.replays)
     replays = {replay.game.id: replay for replay in session.replays}
     for facts in session.player_facts:
         yield f"{HEADING}{in_game_words(replays, facts)}:"
@@ -152,6 +170,22 @@ def session_lines(session: Session) -> Iterator[str]:
     yield from call_lines(session)
     yield from staff_action_lines(session)
     yield ""
+    yield from _fault_lines(session) if full else staff_fault_lines(session)
+    yield ""
+    asked = [person for person in session.people if person.interactions]
+    if full:
+        yield from map(progress_line, asked)
+    elif asked:
+        yield f"{RESPONDED}:"
+        yield from (f"  {response_line(person, session.activities)}" for person in asked)
+    if session.persuades and (quiet := [p.name for p in session.people if not p.interactions]):
+        yield quiet_words(quiet)
+    yield from limits_lines([r.game for r in session.replays if r.persuades], full=full)
+    yield from map(note_words, session.notes)
+
+
+def _fault_lines(session: Session) -> Iterator[str]:
+    """List the faults with their steps, and how often each kind of recovery worked."""
     yield f"{counted(len(session.faults), 'fault')}:" if session.faults else "No faults."
     numbers = {game.id: game.number for game in session.games}
     for number, fault in enumerate(session.faults, 1):
@@ -168,22 +202,32 @@ def session_lines(session: Session) -> Iterator[str]:
                 f"  {row['criticality']}, first recovery “{RECOVERY_WORDS[row['recovery']]}”: "
                 f"it worked {of_times(worked, row['instances'])}"
             )
-    yield ""
-    yield from (progress_line(person) for person in session.people if person.interactions)
-    if session.persuades and (quiet := [p.name for p in session.people if not p.interactions]):
-        yield quiet_words(quiet)
-    yield from limits_lines([replay.game for replay in session.replays if replay.persuades])
-    if session.look_after:
-        yield ""
-        yield "To look after:"
-        for told in dict.fromkeys((fault.console, fault.advice) for fault in session.look_after):
-            yield f"  {told[0]}"
-            yield from (f"    - {step}" for step in told[1])
-    yield from map(note_words, session.notes)
 
 
-def limits_lines(games: Sequence[Game]) -> Iterator[str]:
-    """Tell the limits of requests in vain, and how often a robot waited for late data."""
+def staff_fault_lines(session: Session) -> Iterator[str]:
+    """List the faults for staff: when, what, and how each ended."""
+    yield f"{FAULTS_SHORT}:" if session.faults else "No faults."
+    for at, fault in session.timed_faults:
+        outcome = fault_outcome(fault, status_words(fault.status))
+        yield f"  {time_of_day(at)}  {fault.name}: {outcome}"
+
+
+def care_part(session: Session) -> Iterator[str]:
+    """Tell what staff should look after: people, and faults that are not over."""
+    people = attention(session.replays).values()
+    told = care_lines(people, lambda one: with_stay(session, one), session.replays)
+    if not told and not session.look_after:
+        yield f"{CARE}: nothing."
+        return
+    yield f"{CARE}:"
+    yield from (f"  {line}" for line in told)
+    for console, advice in dict.fromkeys((one.console, one.advice) for one in session.look_after):
+        yield f"  {console}"
+        yield from (f"    - {step}" for step in advice)
+
+
+def limits_lines(games: Sequence[Game], *, full: bool = True) -> Iterator[str]:
+    """Tell the limits of requests in vain; if `full`, also how often a robot waited for data."""
     limits = dict.fromkeys(game.asks for game in games if game.asks != (0, 0))
     for visit, most in limits:
         yield (
@@ -191,11 +235,11 @@ def limits_lines(games: Sequence[Game]) -> Iterator[str]:
             f"and {often(most)} in a game."
         )
     pauses, seconds = sum(g.pauses[0] for g in games), sum(g.pauses[1] for g in games)
-    if pauses:
+    if pauses and full:
         yield f"The robot waited for late data {often(pauses)}, for {seconds:.1f} s in all."
 
 
-def _games_lines(replays: Sequence[GameReplay]) -> Iterator[str]:
+def _games_lines(replays: Sequence[GameReplay], *, full: bool) -> Iterator[str]:
     """Describe each game, of many only those with problems, and the totals."""
     games = [replay.game for replay in replays]
     activities = {replay.game.id: replay.activity for replay in replays}
@@ -207,6 +251,9 @@ def _games_lines(replays: Sequence[GameReplay]) -> Iterator[str]:
         if told:
             yield "Those with faults, or that did not go to their end:"
     for game in told:
+        if not full:
+            yield f"{staff_game_words(game, activities[game.id])}. {ending_sentence(game)}"
+            continue
         steps = counted(game.steps, "step")
         yield f"{game_words(game, activities[game.id])}: {steps}. {ending_sentence(game)}"
     if len(told) < len(games):

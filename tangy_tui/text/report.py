@@ -56,11 +56,24 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
-def paused_words(pauses: PauseTotal) -> str:
-    """Tell how often and how long staff paused, after the time in the room; "" if they did not."""
-    if pauses.seconds < 1:
+def how_long_words(session: Session) -> str:
+    """Tell how long the games lasted, were paused, halted by faults, and interrupted."""
+    pauses, halts, breaks = session.staff_pauses, session.halts, session.interruptions
+    part = [
+        f"{length(pauses.seconds)} in {counted(pauses.count, 'pause')}"
+        if pauses.seconds >= 1
+        else "",
+        f"{length(halts.seconds)} in which a fault stopped Tangy" if halts.seconds >= 1 else "",
+    ]
+    words = listed(filter(None, part))
+    told = f"{length(session.seconds)}{f', of which {words}' if words else ''}"
+    return f"{told}{_interrupted_words(breaks)}"
+
+
+def _interrupted_words(breaks: PauseTotal) -> str:
+    if not breaks.count:
         return ""
-    return f", of which {length(pauses.seconds)} in {counted(pauses.count, 'pause')}"
+    return f"; interrupted {often(breaks.count)}, for another {length(breaks.seconds)}"
 
 
 def asked_words(one: Attention) -> str:
@@ -197,11 +210,9 @@ def quiet_words(names: Sequence[str]) -> str:
 def attention_lines(
     found: Iterable[Attention], name: Name, replays: Sequence[GameReplay] = ()
 ) -> list[str]:
-    """Tell who won, and how long those who asked for help waited and had Tangy with them."""
+    """Tell how long those who asked for help waited and had Tangy with them."""
     people = list(found)
-    won = [name(one.id) for one in people if one.won]
-    lines = [f"Won: {listed(won)}."] if won else []
-    asked = [_asked_line(one, name) for one in people if one.requests]
+    lines, asked = list[str](), [_asked_line(one, name) for one in people if one.requests]
     where = visiting_words(replays)
     if asked:
         lines += ["Asked for help:", *asked, *([f"  {where}"] if where else [])]

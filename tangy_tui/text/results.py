@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from tangy_profiles.activity import Activity
 from tangy_tui.monitoring.people_progress import RESULTS, Attempts, MethodProgress, Progress
 from tangy_tui.text.numbers import listed, often
 
@@ -48,6 +49,17 @@ def progress_line(person: Progress) -> str:
                 asked = f"{strategy}{f' ({where})' if where else ''}"
                 parts.append(f"{asked}: {result_words([one])} ({expected})")
     return f"{person.name} was asked {often(person.interactions)}: {'; '.join(parts)}"
+
+
+def response_line(person: Progress, activities: Iterable[Activity]) -> str:
+    """Tell staff what a person did when asked, and how Tangy asked: in words, without numbers."""
+    ways = {name: words for one in activities for name, words in one.strategies.items()}
+    parts = [
+        f"{result_words([one])} (Tangy {ways.get(strategy, f'used {strategy}')})"
+        for strategy, one in person.strategies.items()
+        if one.used
+    ]
+    return f"{person.name}: {'; '.join(parts)}"
 
 
 def method_words(person: Progress, method: MethodProgress) -> str:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_tui.monitoring.fault import OVER
 from tangy_tui.text.faults import RECOVERY_WORDS
-from tangy_tui.text.report import paused_words
-from tangy_tui.text.times import length
+from tangy_tui.text.report import how_long_words
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import Fault
@@ -55,7 +54,7 @@ def how_long(session: Session) -> str:
     """Tell how long the games lasted, and how long they were paused."""
     if not session.timed:
         return NO_TIMES
-    return f"{length(session.seconds)}{paused_words(session.staff_pauses)}"
+    return f"{how_long_words(session)}."
 
 
 def drawn_words(drawn: int, games: int) -> str:

@@ -93,7 +93,7 @@ def report_session(
     elif html is not None:
         print_line(plain(report_in(html)))
     else:
-        for line in session_lines(session):
+        for line in session_lines(session, full=full):
             print_line(plain(line))
 
 

@@ -126,11 +126,10 @@ def test_calls_first_does_not_interrupt_a_wait() -> None:
     assert (bob.requests, bob.waits, bob.open) == (1, [30.0], [])
 
 
-def test_the_summary_lists_winners_and_waits_longest_first() -> None:
+def test_the_summary_lists_waits_longest_first() -> None:
     ann = Attention("Ann", waits=[20.0, 400.0], visits=2, seconds=30.0, won=1)
     bob, cy = Attention("Bob", open=[60.0]), Attention("Cy", waits=[30.0], open=[120.0], visits=1)
     assert attention_lines([ann, bob, cy], str) == [
-        "Won: Ann.",
         "Asked for help:",
         "  Ann twice, waited: 20 s, then 7 min; 2 visits, 30 s in all",
         "  Bob once, waited: 1 min (not reached); never visited",

@@ -146,7 +146,7 @@ def test_a_report_is_a_page_or_a_few_lines(tangy: Tangy, played: Path, tmp_path:
     assert (done.returncode, done.stderr) == (0, "")
     assert page.read_text(encoding="utf-8").count('class="timeline"') == 3
     lines = tangy("log", "report", "--data", played).stdout
-    assert "To look after:" in lines
+    assert "What to look after:" in lines
     assert "Wheels do not answer" in lines
 
 
