@@ -9,8 +9,6 @@ from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.codec import encode
-from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.declared.memory import GameMemory
 from tangy_profiles.declared.silence import SILENCE
 from tangy_profiles.events import EventRecord
 from tangy_profiles.game_records import (
@@ -27,8 +25,9 @@ from tangy_profiles.game_records import (
 from tangy_profiles.past_game import OpenRequests
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.staff_records import StaffAction, StaffActionKind
-from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
+from tangy_tui.monitoring.done import Done as Done
+from tangy_tui.monitoring.done import done_of
 from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.pauses import PauseClock, PauseTotal
@@ -37,36 +36,6 @@ IN_GAMES = (
     *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
     *(CallMade, GameResumed, GameChange, GameEnding, AnswerNotClear),
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Done:
-    """An executed behaviour: where, for whom, how, and whether as expected.
-
-    `begun` and `over` are in s since the game began. `right`: the world carried it out, and the
-    activity, if known, expects it in this situation or expects nothing. `said` is the speech, if
-    the activity is known.
-    """
-
-    number: int
-    begun: float
-    over: float
-    state: ActivityState
-    after: ActivityState
-    behaviour: str
-    target: str | None
-    strategy: str
-    completed: bool
-    right: bool
-    teacher: str
-    said: str
-    draws: bool
-    numbers: tuple[int, ...] = ()
-    """The called number, or the numbers a person should mark or clear."""
-    wins: bool = False
-    """Whether it celebrates a winner, if the activity is known."""
-    memory: GameMemory | None = None
-    """The facts after it, in a live game of an activity by facts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,6 +258,7 @@ def _replay(
     done = Counter[str]()  # how often each behaviour was completed so far
     new = {change.person for change in _changes(events) if change.what == "joined"}
     pauses = PauseClock()
+    stopped = False  # the robot, by people
     lets_in = False  # staff let a person in, for whom the game is resumed at once
     for event in events:
         what: What
@@ -302,7 +272,9 @@ def _replay(
                 replay.seconds += took or 0.0
                 times = done[record.behaviour]
                 done[record.behaviour] += record.completed
-                what = _done(record, step, begun, replay.seconds, activity, names, times)
+                what = done_of(
+                    record, step, (begun, replay.seconds), activity, names, times, stopped=stopped
+                )
             case ResponseGiven(followed=followed, seconds=took):
                 what = _answered(event, followed, took)
             case ResponseAwaited():
@@ -324,6 +296,8 @@ def _replay(
                 if action.did == "came" and action.person in new:
                     lets_in = True
                     new -= {action.person}
+                if action.did in ("stopped", "let go on"):
+                    stopped = action.did == "stopped"
                 # while a step was carried out that comes later
                 acted = max(acted, action.seconds or 0.0)
                 pauses.did(action.did, max(acted, replay.seconds))
@@ -346,46 +320,6 @@ def _replay(
     replay.seconds = max(acted, replay.seconds)
     replay.staff_pauses = pauses.total(replay.seconds)
     return replay
-
-
-def _done(
-    step: GameStep,
-    number: int,
-    begun: float,
-    over: float,
-    activity: Activity | None,
-    names: Mapping[str, str],
-    times: int,
-) -> Done:
-    name, target, strategy = step.behaviour, step.target, step.strategy or ""
-    behaviour = activity.behaviours.get(name) if activity is not None else None
-    expected = activity.expected.get(step.state.situation, name) if activity is not None else name
-    said = ""
-    if activity is not None and behaviour is not None:
-        chosen = strategy or activity.plain_strategy
-        speech = behaviour.speech.get(chosen, "")
-        if isinstance(activity, DeclaredActivity):
-            speech = activity.text_in_turn(name, chosen, times, personal=target is not None)
-        numbers = tuple(n for n in step.numbers if n in activity.deck.numbers)
-        said = activity.fill(speech, names.get(target or "", target or ""), numbers, aloud=True)
-    return Done(
-        number=number,
-        begun=begun,
-        over=over,
-        state=step.state,
-        after=step.after or step.state,
-        behaviour=name,
-        target=target,
-        strategy=strategy if behaviour is None or behaviour.persuades else "",
-        completed=step.completed,
-        right=step.completed and expected == name,
-        teacher=step.teacher or "",
-        said=said,
-        draws=behaviour is not None and behaviour.effect == "draw",
-        numbers=step.numbers,
-        wins=behaviour is not None and bool(behaviour.needs) and step.completed,
-        memory=step.memory,
-    )
 
 
 def _answered(

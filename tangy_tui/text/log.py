@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_tui.text.situations import Name
 
+STOPPED_BEFORE = "Tangy had begun this before the stop. It stood still and did not finish."
 MOST_TOLD = 30
 """A report describes up to this many games one by one; of more, only those with problems."""
 
@@ -129,7 +130,9 @@ def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
     lines = [f"{done.number}. {words} -> {behaviour}{target}{how}{why}"]
     if done.said:
         lines.append(f"   Tangy says: {done.said}")
-    if not done.completed:
+    if done.stopped:
+        lines.append(f"   {STOPPED_BEFORE}")
+    elif not done.completed:
         lines.append("   It could not be carried out.")
     elif not done.right:
         lines.append("   That is not what the activity expects here.")
