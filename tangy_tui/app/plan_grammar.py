@@ -44,7 +44,29 @@ _CLAIMS = re.compile(r"(.+?) (?:has|calls|says|shouts|claims|got)(?: a| an)? (.+
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
-def one_person_each(said: str) -> list[str]:
+def lines_of(said: str, read: Callable[[str], object]) -> list[str]:
+    """Return the lines to carry out: one for each person if a line names several.
+
+    Args:
+        said: the line.
+        read: reads a line as a command.
+
+    Raises:
+        TangyError: the line cannot be read, or it names a person who is not known.
+    """
+    try:
+        read(said)
+    except TangyError:
+        each = _one_person_each(said)
+        if len(each) == 1:
+            raise
+        for line in each:
+            read(line)
+        return each
+    return [said]
+
+
+def _one_person_each(said: str) -> list[str]:
     """Return a line for each person if a line says of several that they are here or have left."""
     found = re.fullmatch(r"(here|left) (.+)", said.strip(" ."), re.I)
     names = [] if found is None else re.split(r",(?: and)? | and ", found[2])

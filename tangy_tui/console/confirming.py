@@ -5,6 +5,7 @@ They are asked only of a person who types: a script means what it says.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from queue import SimpleQueue
@@ -24,6 +25,7 @@ from tangy_tui.text.confirmations import (
     discard_confirmation,
 )
 
+_NO_AND_MORE = re.compile(r"(?:n|no)\b[\s,.;:!]+(.+)", re.I)
 CommandT = TypeVar("CommandT")
 Write = Callable[[str], None]
 
@@ -65,9 +67,12 @@ class TypedConfirmation(Generic[CommandT]):
             self._asked = None
             return command
         else:
-            self.drop()
-            self._write(NOT_DONE)
+            self._decline()
         return None
+
+    def _decline(self) -> None:
+        self.drop()
+        self._write(NOT_DONE)
 
     def drop(self) -> None:
         """Close the question."""
@@ -102,6 +107,22 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
         """Close the question, and let the game go on."""
         super().drop()
         self._hold.close()
+
+    def no_and_more(self, line: str) -> str:
+        """Close an open question if a line says no, and more; return what it says besides.
+
+        It is "" if no question is open, or the line is something else.
+        """
+        found = _NO_AND_MORE.fullmatch(line.strip())
+        if not self.open or found is None:
+            return ""
+        self._decline()
+        return found[1]
+
+    def give_way(self, command: GameCommand) -> None:
+        """Close an open question because staff typed another command instead of an answer."""
+        if self._asked is not None and self._asked[0] != command:
+            self._decline()
 
     def end_of_hold(self) -> Callable[[], Sequence[ControllerOutput]]:
         """Return a function that lets the game go on, once a confirmed command is carried out."""

@@ -22,7 +22,7 @@ from tangy_tui.app.game_commands import (
     SetPace,
     StopRobot,
 )
-from tangy_tui.app.plan_grammar import one_person_each
+from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.text import set_up as text
@@ -96,14 +96,10 @@ class SetUpLines:
 
     def _do(self, words: str) -> bool | None:
         """Carry out a command, for each person that it names; None: staff leave."""
-        try:
-            return self._own(words) or self._take(self._command(words))
-        except TangyError:
-            each = one_person_each(words)
-            if len(each) == 1:
-                raise
-        done = [self._take(self._command(line)) for line in each]
-        return all(done)
+        if self._own(words):
+            return True
+        done = [self._take(self._command(line)) for line in lines_of(words, self._command)]
+        return done[0] if len(done) == 1 else all(done)
 
     def _tell_unknown(self, words: str) -> None:
         """Tell which command may have been meant, or that it works only in a game."""

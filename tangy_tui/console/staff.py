@@ -19,7 +19,7 @@ from typing import TypeAlias
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import command_reader
+from tangy_tui.app.command_grammar import command_reader, read_answer
 from tangy_tui.app.freeze_watch import FreezeWatch
 from tangy_tui.app.game_commands import (
     AT_ONCE,
@@ -33,7 +33,7 @@ from tangy_tui.app.game_commands import (
     StopRobot,
 )
 from tangy_tui.app.game_controller import ControllerOutput, GameController
-from tangy_tui.app.plan_grammar import one_person_each
+from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.console.answering import AnsweredQuestions
@@ -332,22 +332,28 @@ class StaffLines:
         if not text or text.startswith("#"):
             return
         controller = self._controller
-        try:
-            command = self._command(text)
-        except TangyError as error:
-            each = one_person_each(text)
-            if len(each) == 1:
-                self._telling.write(str(error))
-                return
-            for line in each:
-                self._take(line)
+        if more := self._sure.no_and_more(text):
+            self._take(more)
             return
+        try:
+            each = lines_of(text, self._command)
+        except TangyError as error:
+            self._telling.write(str(error))
+            return
+        for line in each if len(each) > 1 else ():
+            self._take(line)
+        if len(each) > 1:
+            return
+        command = self._command(text)
         if isinstance(command, StopRobot):
             self._sure.drop()
             if controller.answers.verifying:
                 controller.answers.reply(Reply(yes=False))
-        answer = text.casefold()
+        told = self._inquiries.lines(text.casefold()) if command is None else None
+        if command is not None and read_answer(text) is None:
+            self._sure.give_way(command)
         if self._sure.open:
+            self._telling.write_all(told or ())
             if (confirmed := self._sure.answer(text)) is not None:
                 self._carry_out(confirmed)
                 self._do_next(self._sure.end_of_hold())
@@ -357,7 +363,7 @@ class StaffLines:
             self._carry_out(command)
         elif (reply := self._questions.answer(text)) is not None:
             self._take_reply(reply)
-        elif (told := self._inquiries.lines(answer)) is not None:
+        elif told is not None:
             self._telling.write_all(told)
         elif controller.answers.verifying:
             self._telling.write(ANSWER_HELP)

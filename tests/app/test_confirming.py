@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.confirmations import needed_confirmation
 from tangy_tui.app.game_commands import (
     ClaimCard,
@@ -136,6 +137,42 @@ def test_a_stop_needs_no_answer_first(workspace: Workspace) -> None:
         ("call number", "end"), ("End the game?", "stop"), ("STOP", "end"), ("End the game?", "y")
     ).plays(workspace)
     assert "You ended the game." in told.split("STOP")[1]
+
+
+@pytest.mark.parametrize(
+    "line", ["n, User 2 has left", "no. User 2 has left", "N User 2 has left", "User 2 has left"]
+)
+def test_words_instead_of_a_yes_or_after_a_no_are_carried_out(
+    workspace: Workspace, line: str
+) -> None:
+    told = Typist(
+        ("call number", "end"), ("End the game?", line), ("User 2 has left", "end"),
+        ("End the game?", "y"),
+    ).plays(workspace)  # fmt: skip
+    acts = [event.record for event in workspace.store.events(StaffAction)]
+    assert [(act.did, act.person) for act in acts][:2] == [("left", "user2"), ("ended", "")]
+    assert told.count("Not done.") == 1
+
+
+def test_a_question_of_staff_is_answered_and_the_open_one_asked_again(
+    workspace: Workspace,
+) -> None:
+    told = Typist(
+        ("call number", "end"), ("End the game?", "here nobody"), ("nobody", "people"),
+        ("End the game?", "end"), ("End the game?", "y"),
+    ).plays(workspace)  # fmt: skip
+    assert told.count("End the game?") == 3 and "Not done." not in told
+    assert workspace.name("user3") in told.split("End the game?")[1]
+
+
+def test_a_line_with_an_unknown_person_is_refused_whole(workspace: Workspace) -> None:
+    told = Typist(
+        ("call number", "left User 1, nobody"), ("nobody", "left User 1 and User 2"),
+        ("User 2 has left", "end"), ("End the game?", "y"),
+    ).plays(workspace)  # fmt: skip
+    assert "nobody" in told and told.count("User 1 has left") == 1
+    acts = [event.record for event in workspace.store.events(StaffAction)]
+    assert [act.person for act in acts if act.did == "left"] == ["user1", "user2"]
 
 
 def test_nothing_is_done_while_a_question_is_open(control: GameController) -> None:

@@ -57,6 +57,13 @@ def test_a_seat_that_does_not_exist_is_refused(workspace: Workspace) -> None:
     assert setup.seats == ["user1", "user2", "user3", "user4"]
 
 
+def test_a_line_with_an_unknown_person_is_refused_whole(workspace: Workspace) -> None:
+    setup, said = answers(workspace, "left User 1, User 2, nobody")
+    assert not setup.away and len(said) == 1 and "'nobody'" in said[0]
+    setup, said = answers(workspace, "left User 1 and User 2", "here User 1, nobody and User 2")
+    assert setup.away == {"user1", "user2"} and "'nobody'" in said[-1]
+
+
 def test_every_example_of_a_command_is_understood(workspace: Workspace) -> None:
     for word, example in text.COMMANDS.items():
         if word not in ("begin", "end"):

@@ -98,9 +98,9 @@ def test_a_game_that_waits_without_further_lines_ends(
 
 
 def test_a_line_can_say_of_several_people_that_they_left(workspace: Workspace) -> None:
-    told(workspace, "pause", "left User 2, User 3 and User 9", "end", speed=50)
+    told(workspace, "pause", "left User 2, User 3 and User 4", "end", speed=50)
     left = [e.record.person for e in workspace.store.events(StaffAction) if e.record.did == "left"]
-    assert left == ["user2", "user3"]
+    assert left == ["user2", "user3", "user4"]
 
 
 def test_staff_pause_stop_resume_take_over_and_end_by_lines(workspace: Workspace) -> None:
