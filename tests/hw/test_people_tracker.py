@@ -178,6 +178,20 @@ class TestTracks:
         _, track = nearest(watching.tracker.tracks, person)
         assert track.pace < 0.8  # not for ever
 
+    def test_a_walker_keeps_the_pace_until_they_have_stood_for_a_while(self) -> None:
+        def step(person: Person, drive: Drive) -> None:
+            if person.gone < 1.0:
+                person.walk(0.0, 1.0)
+
+        person = Person(4.2, 2.8, 0.0, step)
+        watching = Watching(drive([person]))
+        watching.watch(1.0)
+        while not (track := nearest(watching.tracker.tracks, person)[1]).stood:
+            watching.watch(TICK)
+        assert track.speed == 0.0 and track.pace > 0.6
+        watching.watch(0.7)
+        assert nearest(watching.tracker.tracks, person)[1].pace == 0.0
+
     def test_a_person_who_left_is_forgotten(self) -> None:
         person = Person(5.2, 2.6, 0.4)
         watching = Watching(drive([person]))

@@ -30,6 +30,7 @@ SURE = 3  # sightings that confirm a track
 DROPPED, DROPPED_HIDDEN = 0.5, 1.5  # seconds unseen until a track is dropped: visible, occluded
 SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # standing: age in s; less than m in s
 RUNS = 0.25  # m/s above which a track does not count as standing
+RESTS = 0.5  # seconds of standing after which a walker's pace is forgotten: a track may err
 SLOWS = 0.2  # m/s^2, decrease of a walker's remembered pace
 WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a track a person
 LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # share of a window in s with two legs that makes a person
@@ -118,7 +119,7 @@ class _Followed:
             self.stood = 0.0
         walked = self.age >= WALKED_SECONDS and self._way(LEGS_SECONDS) >= WALKED
         slower = max(0.0, self.pace - SLOWS * dt)
-        self.pace = 0.0 if self.stood > 0 else max(self._fast, slower)
+        self.pace = 0.0 if self.stood > RESTS else max(self._fast, slower)
         pairs = sum(one[3] for one in self.past)
         stands = self.age >= LEGS_SECONDS and pairs >= LEGS_SHARE * len(self.past)
         self.person |= walked or stands
