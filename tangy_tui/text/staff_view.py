@@ -25,6 +25,8 @@ STEP_SECONDS = 10
 
 NOTHING_CALLED = "nothing called yet"
 PAUSED = "Paused."
+TIME_FIRST = ", once everybody has had time"
+"""Why Tangy does not call the next number yet."""
 OVER = "The game is over. Its report: tangy report."
 
 
@@ -109,11 +111,15 @@ def next_words(
     state: ActivityState,
     name: Callable[[str], str],
     calls_first: int = 0,
+    *,
+    waits: bool = False,
 ) -> str:
-    """Tell Tangy's next step, and why; `calls_first` calls come before people who asked."""
+    """Tell Tangy's next step, and why.
+
+    `calls_first` calls come before people who asked; Tangy `waits` for the time of the next call.
+    """
     behaviour = activity.behaviours.get(decision.behaviour)
-    waiting = f"{counted(calls_first, 'number')} first, then those who ask"
-    why = waiting if calls_first else activity.in_words(state.situation)
+    why = "" if calls_first else activity.in_words(state.situation)
     clause = why in {label for rule in activity.stage_rules for label in rule.label.values()}
     if isinstance(activity, DeclaredActivity) and not calls_first:
         why = moment_words(activity, state, name)
@@ -124,7 +130,15 @@ def next_words(
         whom = name(state.attended) if behaviour.attends and state.attended else ""
     notes = "; ".join(filter(None, (whom, "" if clause else why)))
     because = f", because {why}" if clause else ""
-    return f"Next: {done}{f' ({notes})' if notes else ''}{because}."
+    if waits and not calls_first:
+        because = TIME_FIRST
+    calls = f" {calls_first_words(calls_first)}" if calls_first else ""
+    return f"Next: {done}{f' ({notes})' if notes else ''}{because}.{calls}"
+
+
+def calls_first_words(calls: int) -> str:
+    """Tell how many numbers Tangy calls before it goes to people who asked."""
+    return f"Tangy calls {counted(calls, 'number')} before it goes to those who ask."
 
 
 def welcomes_words(name: str) -> str:

@@ -8,6 +8,7 @@ from tangy_profiles.game_rules import GameRules
 from tangy_profiles.reading import plain
 
 TITLE = "What do you want to do?"
+CLAIM = "Which card?"
 KEYS = "enter does it   esc goes back"
 WHO_IS_HERE = "Who has come, or has left?"
 AWAY = "away"
@@ -21,6 +22,14 @@ def example_words(rules: GameRules) -> str:
     claim = f", {rules.claim} 17" if rules.claim else ""
     patterns = f", play for {rules.patterns[-1].name}" if rules.patterns else ""
     return f"For example: pace 20{claim}{patterns}, take back, left Rosa, here Rosa."
+
+
+def claim_words(word: str) -> str:
+    """Tell what to type about a card to check; `word` begins the command."""
+    return (
+        f"Type the number on the card, as in: {word} 17. Or type the person's name, if Tangy knows "
+        "their card."
+    )
 
 
 def not_known(words: str, near: Sequence[str] = ()) -> str:

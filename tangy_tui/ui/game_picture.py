@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -74,6 +74,8 @@ class GamePicture:
         """The lesson of the last answer, until the next question tells it."""
         self.goes_on = False
         """Whether a resumed game continues at once."""
+        self.counts: Callable[[], bool] | None = None
+        """Whether the time to the next call is counted down; None: the screen is not for staff."""
         self._stage = ""
         self._step: int | None = None
         self._game: int | None = None
@@ -152,14 +154,15 @@ class GamePicture:
                     log.write(broken_off_words(steps, reason), "bad")
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
-        """Update the status line: robot, stage and note."""
+        """Update the status line: robot, stage and note; for staff without the step."""
+        counts = self.counts is not None and self.counts()
         self._screen.query_one(StatusLine).show(
             Status(
                 mode=with_activity(mode, self._workspace.activity),
                 robot=robot,
-                stage=self._stage_now(),
+                stage="" if counts else self._stage_now(),
                 game=self._game,
-                step=self._step,
+                step=self._step if self.counts is None else None,
                 note=note,
                 alarm=robot != "OK" and not robot.startswith(WAITS),
             )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.game_rules import USUAL_PACE
-from tangy_profiles.game_world import SIMULATED
+from tangy_profiles.game_world import PLAYED_WORLDS, SIMULATED
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.app.interruption import GameToPlay, find_interrupted
@@ -43,7 +43,11 @@ if TYPE_CHECKING:
 
 def run_program(workspace: Workspace, *, ascii_only: bool, voice: bool = False) -> int:
     """Open the application on its home screen; return the exit status."""
-    return _run(workspace, None, ascii_only, voice=voice, asks_name=True)
+    begun = datetime.now(UTC)
+    status = _run(workspace, None, ascii_only, voice=voice, asks_name=True)
+    for world in PLAYED_WORLDS:
+        _tell_interrupted(workspace, world, begun)
+    return status
 
 
 def run_teaching(
@@ -181,10 +185,12 @@ def run_live(
     return status
 
 
-def _tell_interrupted(workspace: Workspace, world: GameWorld) -> None:
-    """Tell that a game is not over, and can be resumed."""
+def _tell_interrupted(
+    workspace: Workspace, world: GameWorld, since: datetime | None = None
+) -> None:
+    """Tell that a game is not over, and can be resumed; only if it went on `since` a time."""
     past = find_interrupted(workspace, world)
-    if past is not None:
+    if past is not None and (since is None or past.at >= since):
         print(plain(to_be_resumed_words(past, len(past.called(workspace.activity)))))
 
 

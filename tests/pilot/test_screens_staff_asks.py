@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -10,15 +11,22 @@ from textual.widgets import Input
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.command_grammar import command_reader
 from tangy_tui.app.game_commands import AskFor
+from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.confirmations import called_meanwhile
+from tangy_tui.text.interruptions import to_be_resumed_words
+from tangy_tui.text.staff_view import TIME_FIRST
+from tangy_tui.ui import run as opening
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.program import Program
-from tests.pilot.conftest import screen_text
-from tests.pilot.live_games import HeldLink, live_program, live_world, paused_after
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
+from tangy_tui.ui.widgets.status_line import StatusLine
+from tests.app.test_interruption import Robot
+from tests.pilot.conftest import SMALL, screen_text
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -70,7 +78,7 @@ async def test_a_refused_command_is_typed_over_or_replaced_by_a_similar_one(
 
     async with run() as pilot:
         answers: list[object] = []
-        dialog = CommandDialog(reader, "", "", similar)
+        dialog = CommandDialog(reader, "", "", "", similar)
         await pilot.app.push_screen(dialog, answers.append)
         line = dialog.query_one(Input)
         await pilot.press(*"qwertz", "enter")
@@ -81,3 +89,68 @@ async def test_a_refused_command_is_typed_over_or_replaced_by_a_similar_one(
         assert line.value == f"help {name}x"  # it can be corrected, too
         await pilot.press("backspace", "enter", "tab", "enter")
         assert answers == [AskFor("user2")]
+
+
+@pytest.mark.slow
+async def test_esc_closes_a_message_and_shows_the_next_step_before_it_asks_to_leave(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=SMALL, notifications=True) as pilot:
+        await paused_after(pilot, link, 2)
+        screen = live(pilot)
+        screen.query_one(StaffPanel).display = True
+        screen.notify("Noted.")
+        await until_shown(pilot, lambda: bool(screen.query("Toast")))
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: not screen.query("Toast"))
+        assert pilot.app.screen is screen
+        panel = screen.query_one(StaffPanel)
+        panel.styles.height = 4
+        await pilot.pause()
+        panel.scroll_to(y=2, animate=False, force=True)
+        await until_shown(pilot, lambda: panel.scroll_offset.y == 2)
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: panel.scroll_offset.y == 0)
+        assert pilot.app.screen is screen
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+
+
+@pytest.mark.slow
+async def test_while_a_call_is_counted_down_no_line_says_that_it_is_due(
+    run: Run, program: Program, world: LiveWorld, workspace: Workspace
+) -> None:
+    world.pace = 30.0
+    async with run(app=program, size=SMALL) as pilot:
+        await until_shown(pilot, lambda: len(world.called) == 1)
+        await until_shown(pilot, lambda: "next call in 30 s" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: TIME_FIRST in screen_text(pilot.app))
+        due = workspace.activity.in_words(world.tracker.state().situation)
+        line = live(pilot).query_one(StatusLine).status
+        assert line.stage != due and line.step is None
+        assert due not in screen_text(pilot.app)
+
+
+def test_a_game_left_open_by_the_program_begun_at_home_is_told(
+    taught: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    workspace = Workspace(taught)
+    robot = Robot(workspace)
+
+    def plays(program: Program) -> int:
+        robot.control.next()
+        robot.control.interrupt()
+        return 0
+
+    monkeypatch.setattr(opening, "outlive_terminal", lambda: None)
+    monkeypatch.setattr(opening, "read_replies", lambda: None)
+    monkeypatch.setattr(opening, "run_app", plays)
+    opening.run_program(workspace, ascii_only=False)
+    past = find_interrupted(workspace, robot.world.played_in)
+    assert past is not None
+    told = to_be_resumed_words(past, len(past.called(workspace.activity)))
+    assert told in capsys.readouterr().out
+    monkeypatch.setattr(opening, "run_app", lambda program: 0)
+    opening.run_program(workspace, ascii_only=False)  # this time it was not played
+    assert told not in capsys.readouterr().out
+    workspace.close()

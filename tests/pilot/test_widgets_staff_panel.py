@@ -52,3 +52,22 @@ async def test_a_fact_is_told_in_the_longest_words_for_which_there_is_room(run: 
             panel.show("B7", "Next: call number.", [ways], [("Rosa", "asks 10 s", "warn")])
             await pilot.pause()
             assert told in pilot.text() and (told == ways[0] or ways[0] not in pilot.text())
+
+
+async def test_a_panel_that_was_scrolled_returns_to_the_next_step(run: Run) -> None:
+    people = [(f"Person {number:02}", "no visit yet", "text") for number in range(24)]
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.focus()
+        panel.show("B7", "Next: call number.", ["1:01 so far"], people)
+        await pilot.pause()
+        await pilot.press("down", "down")
+        panel.show("B7", "Next: call number.", ["1:02 so far"], people)  # only the clock went on
+        await pilot.pause()
+        assert panel.scroll_offset.y == 2
+        panel.show("B7", "Next: tell a joke.", ["1:03 so far"], people)
+        await pilot.pause()
+        assert panel.scroll_offset.y == 0 and "Next: tell a joke." in pilot.text()
+        await pilot.press("down", "home")
+        await pilot.pause()
+        assert panel.scroll_offset.y == 0

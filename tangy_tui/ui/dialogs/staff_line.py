@@ -37,7 +37,8 @@ class CommandDialog(LineDialog[GameCommand | Perform]):
         self,
         read: Callable[[str], GameCommand | Perform | None],
         begun: str,
-        example: str,
+        title: str,
+        words: str,
         similar: Callable[[str], Sequence[str]],
     ) -> None:
         """Create the dialog.
@@ -45,10 +46,11 @@ class CommandDialog(LineDialog[GameCommand | Perform]):
         Args:
             read: parses a command.
             begun: the initial text of the line.
-            example: examples of commands.
+            title: the question.
+            words: its explanation, such as examples.
             similar: returns commands that are similar to words.
         """
-        super().__init__(text.TITLE, example, text.KEYS, begun=begun)
+        super().__init__(title, words, text.KEYS, begun=begun)
         self._read, self._similar = read, similar
         self._near: list[str] = []  # the similar commands, in the order of the next Tabs
 

@@ -114,6 +114,7 @@ class LiveScreen(PlayScreen):
         self.world = world
         self.mode = MODES.get(world.played_in, self.mode)
         self._faults.beside = self._attend_beside
+        self.picture.counts = lambda: bool(self._until_call()) and not self.at_rest
         self.working = 0  # number of running and queued commands
         self._seen_doing = ""
         self._frozen = 0.0

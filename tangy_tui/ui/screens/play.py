@@ -35,7 +35,6 @@ from tangy_tui.ui.screens import play_keys
 from tangy_tui.ui.screens.play_keys import faster, keys
 from tangy_tui.ui.screens.play_staff import PlayStaff
 from tangy_tui.ui.widgets.room_view import RoomView
-from tangy_tui.ui.widgets.transcript import Transcript
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
@@ -162,11 +161,10 @@ class PlayScreen(PlayStaff):
             self._tell_now(f"{follow} will follow.", "dim")
 
     def action_leave(self) -> None:
-        """Take the cursor off the steps, give up a question, or leave; in mid-game ask first."""
-        steps = self.query_one(Transcript)
-        if steps.has_focus and steps.chosen is not None:
-            steps.release()
-        elif (asking := self._asking) is not None:
+        """Go back by one step, give up a question, or leave; in mid-game ask first."""
+        if self.went_back():
+            return
+        if (asking := self._asking) is not None:
             asking.ask_to_give_up()
         elif self.at_rest:
             self.leave(self.tally)

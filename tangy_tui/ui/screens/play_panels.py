@@ -137,6 +137,20 @@ class PlayPanels(TangyScreen[Tally]):
         )
         self.picture.show_stage()
 
+    def went_back(self) -> bool:
+        """Close a message, take the cursor off the steps, or show the next step again.
+
+        Return whether there was anything to go back from.
+        """
+        if self.query("Toast"):
+            self.app.clear_notifications()
+            return True
+        steps, staff = self.query_one(Transcript), self.query_one(StaffPanel)
+        if steps.has_focus and steps.chosen is not None:
+            steps.release()
+            return True
+        return bool(staff.display and staff.return_to_top())
+
     def action_sensors(self) -> None:
         """Show the state of all devices above the game, which continues."""
         try:

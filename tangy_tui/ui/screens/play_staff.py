@@ -44,7 +44,16 @@ from tangy_tui.learning.verification import Verified
 from tangy_tui.text.confirmations import called_meanwhile, confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
-from tangy_tui.text.typed_commands import IS_AWAY, IS_HERE, SOMEBODY_NEW, WHO_IS_HERE, example_words
+from tangy_tui.text.typed_commands import (
+    CLAIM,
+    IS_AWAY,
+    IS_HERE,
+    SOMEBODY_NEW,
+    TITLE,
+    WHO_IS_HERE,
+    claim_words,
+    example_words,
+)
 from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.base import perform
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
@@ -195,26 +204,28 @@ class PlayStaff(PlayPanels):
         elif isinstance(command, Pause | CallAgain | ChangePace):
             self._do(command)
 
-    def action_type(self, begun: str = "") -> None:
+    def action_type(self) -> None:
         """Let staff type a command, in the line of an open question if there is one."""
-        if not begun and (lines := self.query("#command-input")):
+        if lines := self.query("#command-input"):
             lines.first().focus()
             return
-        self.run_worker(self._type(begun), name="type", group="type", exclusive=True)
+        self.run_worker(self._type(""), name="type", group="type", exclusive=True)
 
     def action_claim(self) -> None:
-        """Let staff type the number of a card to check."""
+        """Let staff type the number of a card to check, or a name."""
         word = self._workspace.activity.rules.claim or CHECK
-        self.action_type(f"{word} ")
+        claim = CLAIM, claim_words(word)
+        self.run_worker(self._type(f"{word} ", claim), name="type", group="type", exclusive=True)
 
-    async def _type(self, begun: str) -> None:
+    async def _type(self, begun: str, asked: tuple[str, str] | None = None) -> None:
+        """Let staff type a command; `asked` is the question, and its explanation."""
         activity = self._workspace.activity
         names = [*self._workspace.names.values()]
         read = command_reader(activity, lambda who: self._workspace.find_person(who).id)
         dialog = CommandDialog(
             lambda typed: read(typed) or read_screen(typed),
             begun,
-            example_words(activity.rules),
+            *(asked or (TITLE, example_words(activity.rules))),
             lambda typed: nearest_commands(typed, names, activity.rules),
         )
         command = await self.app.push_screen_wait(dialog)

@@ -65,7 +65,8 @@ def _next(shown: ViewSource) -> str:
     calls_first = 0 if planned is None else planned.tracker.calls_first
     words = ""
     if found is not None:
-        words = text.next_words(world.activity, *found, shown.name, calls_first)
+        waits = control.robot.rests(found[0])
+        words = text.next_words(world.activity, *found, shown.name, calls_first, waits=waits)
     elif shown.said:  # if the next step is unknown, staff need to know the last question
         words = text.said_words(shown.said)
     return words if control.going else f"{text.PAUSED} {words}".strip()

@@ -71,7 +71,7 @@ class StaffPanel(RowView, can_focus=True):
     HELP = (
         "The last call, the pattern to play for, the time, the pace, what Tangy does next and why, "
         "and each person: how long they have waited, and when Tangy last visited them. If there "
-        "are more people than lines, up and down scroll."
+        "are more people than lines, up and down scroll; Home, Esc or the next step leads back."
     )
 
     def __init__(self) -> None:
@@ -94,12 +94,21 @@ class StaffPanel(RowView, can_focus=True):
         """Show the last call, the next step, facts beside the call, people, and the board."""
         new = call, next_step, tuple(facts), tuple(people), tuple(board)
         if new != (self._call, self._next, self._facts, self._people, self._board):
+            if new[:2] != (self._call, self._next):
+                self.return_to_top()
             self._call, self._next, self._facts, self._people, self._board = new
             self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out again."""
         self._draw()
+
+    def return_to_top(self) -> bool:
+        """Scroll back to the next step and the call; return False if they are visible."""
+        if not self.scroll_offset.y:
+            return False
+        self.scroll_home(animate=False)
+        return True
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
         """Tell how many people are below the visible lines; offsets are in rows."""

@@ -15,6 +15,8 @@ STOP = "^x STOP"
 GAP = " │ "
 LEAST = 12
 """The least width in cells of a part that is cut."""
+WHOLE_NOTE = 22
+"""A note of up to so many cells is not cut before the stage: it tells what Tangy does now."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,7 @@ class StatusLine(InkedWidget):
         stage = clean(status.stage)
         game = "" if status.game is None else f"game {status.game}"
         seen = len(GAP) + cell_len(f"seen {clean(status.seen)}") if status.seen else 0
-        note = len(GAP) + min(cell_len(clean(status.note)), LEAST) if status.note else 0
+        note = len(GAP) + min(cell_len(clean(status.note)), WHOLE_NOTE) if status.note else 0
         left = room - seen - note
         if cell_len(stage) + (len(GAP) + len(game) if game else 0) <= left:
             return stage, game
