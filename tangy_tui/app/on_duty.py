@@ -20,7 +20,16 @@ def on_duty(folder: Path) -> str:
     Raises:
         TangyError: the file has a mistake.
     """
-    return read_choice(folder / FILE, KEY) or read_profile(folder).name or login_name(STAFF)
+    return chosen_duty(folder) or read_profile(folder).name or login_name(STAFF)
+
+
+def chosen_duty(folder: Path) -> str:
+    """Return who was chosen to be on duty last, "" if nobody was yet.
+
+    Raises:
+        TangyError: the file has a mistake.
+    """
+    return read_choice(folder / FILE, KEY)
 
 
 def take_duty(folder: Path, name: str) -> str:

@@ -31,6 +31,7 @@ CHOICES: dict[Choice, str] = {
 TEAMS_PLAY = "Teams play this activity: people are not added one by one."
 ACTIVITY, ROOM = "Activity", "Room"
 ON_DUTY, WHO_IS_ON_DUTY = "On duty", "Who is on duty?"
+TYPES_NAME = "Enter: type your name"
 DUTY_DETAIL = "Reports show this name for what staff do."
 ADD, ADD_GUEST, RENAME = "Who has come?", "Is {} here for good?", "What is {} called?"
 FOR_GOOD, TODAY = "takes part from today on", "is a guest today"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import read_game_world
+from tangy_tui.app.on_duty import chosen_duty
 from tangy_tui.app.teacher_profile import NOBODY, change_name, read_profile
 from tangy_tui.text import old_games as text
 from tangy_tui.text.who import TOUR_FOLLOWS, WHO_DETAIL, renamed_teacher
@@ -25,9 +27,11 @@ async def first_start(
     """Ask for the teacher's name if it is unknown, then start.
 
     A new teacher gets the tour, within a guided game if nobody has taught the activity yet.
-    Otherwise the home screen stays: staff may have come to run a game.
+    Otherwise the home screen stays: staff may have come to run a game, and are not asked who they
+    are if somebody is on duty.
     """
-    if asks and not read_profile(program.workspace.store.folder).name:
+    folder = program.workspace.store.folder
+    if asks and not (read_profile(folder).name or (start is None and _is_on_duty(program))):
         leads = start is None and not _is_taught(program)
         detail = f"{WHO_DETAIL}\n{TOUR_FOLLOWS}" if leads else WHO_DETAIL
         program.new_teacher = await ask_name(program, detail, unasked=True) is not None
@@ -41,6 +45,13 @@ async def first_start(
         await ask_about_old_games(program)
     if program.new_teacher and not _is_taught(program):
         program.teach(program.workspace.teaching(program.workspace.teacher, None, guided=True))
+
+
+def _is_on_duty(program: Program) -> bool:
+    """Return whether staff have said who is on duty, for an activity that is taught."""
+    with suppress(TangyError):  # the set-up page tells of a mistake in the file
+        return bool(chosen_duty(program.workspace.store.folder)) and _is_taught(program)
+    return False
 
 
 def _is_taught(program: Program) -> bool:

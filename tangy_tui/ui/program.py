@@ -15,6 +15,7 @@ from tangy_tui.app.interruption import GameToPlay
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.text.rooms import no_chosen_room
+from tangy_tui.text.session_reports import REPORTS
 from tangy_tui.ui import policy_opening
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
@@ -24,6 +25,7 @@ from tangy_tui.ui.interruption import ask_about_interrupted
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.policy_comparison import compare_policies
 from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.session_reports import show_reports
 from tangy_tui.ui.showing_again import show_again
 from tangy_tui.ui.sounding import SoundingApp
 
@@ -133,6 +135,8 @@ class Program(SoundingApp):
                 self._open(self._show_policy())
             case "people":
                 self.people()
+            case "reports":
+                self._open(show_reports(self))
             case "sensors":
                 self._open(self.sensors())
             case "demo":
@@ -318,6 +322,7 @@ class Program(SoundingApp):
         """List the commands of the palette that have no key."""
         yield from super().get_system_commands(screen)
         yield SystemCommand(*text.COMPARE_POLICIES, self.action_compare)
+        yield SystemCommand(*REPORTS, lambda: self.run_worker(show_reports(self)))
 
     async def action_phrases(self) -> None:
         """Open the phrasebook; the microphone is closed while it speaks a word."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -184,15 +184,10 @@ def known_activities_of(games: Sequence[Game], file: str) -> dict[str, Activity]
     Raises:
         TangyError: that file has a mistake, or none of the games is of its activity.
     """
-    from tangy_profiles.activity import known_activities, load_activity
-    from tangy_profiles.errors import ProfileError
+    from tangy_profiles.activity import load_activity
+    from tangy_tui.app.session_reports import played_activities
 
-    wanted = {game.activity for game in games}
-    known = {name: load_activity(name) for name in sorted(wanted & known_activities().keys())}
-    for path in dict.fromkeys(game.file for game in games if game.file):
-        with suppress(ProfileError):  # it was moved, or has mistakes now
-            played_from = load_activity(path)
-            known[played_from.name] = played_from
+    wanted, known = {game.activity for game in games}, played_activities(games)
     if file:
         own = load_activity(file)
         if own.name not in wanted:

@@ -8,11 +8,13 @@ import pytest
 from textual.widgets import Input
 
 from tangy_profiles.demonstration import Demonstration
+from tangy_tui.app.on_duty import take_duty
 from tangy_tui.app.teacher_profile import TeacherProfile, read_profile, save_profile
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.dialogs.name import NameDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.people import PeopleScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
 from tests.pilot.conftest import Run, StillClock
@@ -107,3 +109,13 @@ async def test_the_question_blocks_the_verb_behind_it(run: Run, workspace: Works
         await pilot.press(*"Ada", "enter")
         await until_shown(pilot, lambda: began == ["Ada"])
         await until_shown(pilot, lambda: "Rehearse" in pilot.text())
+
+
+async def test_nobody_is_asked_who_they_are_while_somebody_is_on_duty(
+    run: Run, workspace: Workspace, demonstrate: Callable[[str, int, int], Demonstration]
+) -> None:
+    log_demonstration(workspace.store, demonstrate("bingo", 1, 4))
+    take_duty(workspace.store.folder, "Nina")
+    async with run(app=program(workspace)) as pilot:
+        await pilot.press("e", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, PeopleScreen))

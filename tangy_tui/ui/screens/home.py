@@ -16,7 +16,7 @@ from tangy_tui.text.program import TAGLINE
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import bind
-from tangy_tui.ui.panels import key_line
+from tangy_tui.ui.panels import LOW, key_line
 from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
@@ -46,6 +46,7 @@ CHOICES = (
     MenuItem("r", "Rehearse", "practise what to do when things go wrong"),
     MenuItem("o", "Policy", "what Tangy does in which situation"),
     MenuItem("e", "People", "who takes part, and what persuades them"),
+    MenuItem("b", "Reports", "what happened in the last games"),
     MenuItem("c", "Sensors", "cameras and devices, and the last card"),
     MenuItem("a", "Activity", "choose what to teach and play"),
     MenuItem("d", "Demo", "the whole story, in four minutes"),
@@ -174,8 +175,10 @@ class HomeScreen(TangyScreen[None]):
     """The home screen. Posts `HomeScreen.Chosen` to itself and the application."""
 
     DEFAULT_CSS = """
+    HomeScreen.-low Menu { padding: 0 2; }
     HomeScreen.-behind > * { visibility: hidden; }
     """
+    VERTICAL_BREAKPOINTS = LOW
     TITLE = "Home"
     HELP = (
         "Begin with Teach: show Tangy a game by typing or saying what it should do. Then Learn, "

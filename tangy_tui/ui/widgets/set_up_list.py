@@ -9,6 +9,7 @@ from typing import Literal
 from textual.binding import Binding
 from textual.message import Message
 
+from tangy_tui.text.set_up import TYPES_NAME
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row, Span, fit, shorten
@@ -20,8 +21,10 @@ STATE = 6
 
 TURNS = "  ← →"
 """Shown at the cursor if left and right change a choice."""
-KEYED = ("activity", "room", "patterns")
+KEYED = ("activity", "room", "patterns", "duty")
 """Choices that left and right do not change."""
+TYPED = "duty"
+"""The choice whose value is typed."""
 
 LineKind = Literal["head", "person", "choice", "check"]
 
@@ -206,6 +209,8 @@ class SetUpList(Choosable):
             return tuple(span for one in lines for span in self._sitting(one, width // tables))
         there = line == self.chosen
         turns = TURNS if there and line.kind == "choice" and line.id not in KEYED else ""
+        if there and line.id == TYPED:
+            turns = f"  {TYPES_NAME}"
         value = shorten(clean(line.value), max(0, width - LABEL - 3 - len(turns)))
         mark = "▸ " if there else "  "  # not everybody sees colour
         label = fit(clean(line.label), LABEL)
