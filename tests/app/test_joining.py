@@ -29,9 +29,10 @@ from tangy_tui.app.game_commands import (
     StopRobot,
 )
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.interruption import find_interrupted, take_up
+from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 from tangy_tui.app.joining import Admission, resume_joined
 from tangy_tui.app.register import guest_ids
+from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.policies import load_policy
@@ -230,6 +231,29 @@ def test_staff_say_where_a_person_who_joins_sits(taught: Path) -> None:
     past = find_interrupted(workspace, LIVE)
     assert past is not None and past.beginning.people == sat
     assert tuple(workspace.seats_before) == sat
+    workspace.close()
+
+
+def test_a_new_person_keeps_the_seat_if_the_game_is_discarded_before_it_goes_on(
+    taught: Path,
+) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.play(3)
+    before.told(Joins("Berta", seat=2))
+    before.told(Joins("Carl", seat=1))
+    workspace.close()  # and kill -9
+
+    workspace = Workspace(taught, users=6)
+    past = find_interrupted(workspace, LIVE)
+    assert past is not None
+    end_interrupted(workspace, past, "discarded")
+    sat = ["user6", "user1", "user5", "user2", "user3", "user4"]
+    assert workspace.seats_before == sat
+    setup = SetUp.of(workspace)
+    assert setup.seats == sat
+    LiveGame(workspace)  # another game, in which they did not join
+    assert workspace.seats_before == [person.id for person in workspace.people]
     workspace.close()
 
 
