@@ -44,6 +44,8 @@ class PlannedGame:
     patterns: Patterns
     winner = ""
     """The winner, while others are visited before the game continues or ends."""
+    _asked_before: frozenset[str] | None = None
+    """Who asked when somebody won, and has not been visited since; None: nobody has won yet."""
     vouched: frozenset[str] = frozenset()
     """The people whose cards win, whatever is observed."""
     away: frozenset[str] = frozenset()
@@ -71,6 +73,7 @@ class PlannedGame:
         """Apply the plan at the beginning of a game."""
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
         self.winner, self.visiting, self.all_called = "", "", False
+        self._asked_before = None
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
         self._visited, self._row_began = {}, 0.0
         self._play_pattern()
@@ -143,20 +146,33 @@ class PlannedGame:
         tracker = self.tracker
         if tracker.place in tracker.queue or (tracker.place != FRONT and not self.all_called):
             self._visited[tracker.place] = len(self.called_now)
+        if self._asked_before is not None:
+            self._asked_before &= {*tracker.queue} - {tracker.closed}
         if tracker.finished:
             winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
             person = winner if isinstance(winner, str) else "".join(winner)
-            others = set(tracker.queue) - {person} or self._unseen
-            if self.game_plan.several and others:
+            if self.game_plan.several and (self._may_win_as_well(person) or self._unseen):
                 return DueChange("others first", person)
             return DueChange("played on", person) if self.patterns.left else None
-        if self.winner and not tracker.queue and not self._unseen:
+        if self.winner and not self._may_win_as_well(self.winner) and not self._unseen:
             return DueChange("played on" if self.patterns.left else "won", self.winner)
         if len(self.called_now) >= len(self.own_deck.numbers):
             return self._visit_due() if self.all_called else DueChange("all called")
         if calls := self._calls_due():
             return DueChange("calls first", number=calls)
         return self._visit_due() if self.game_plan.visits else None
+
+    def _may_win_as_well(self, winner: str) -> list[str]:
+        """Return who asked before somebody won, and may have the pattern at the same call.
+
+        Those who ask later do not delay the end, nor do those whose card is known not to win; a
+        claim that was checked always counts.
+        """
+        asked, known = self._asked_before, self.known_cards
+        others = [person for person in self.tracker.queue if person != winner]
+        waiting = [p for p in others if asked is None or p in asked]
+        lose = {p for p in waiting if p in known and self.wins(known[p]) is False}
+        return [p for p in others if p in self.vouched or (p in waiting and p not in lose)]
 
     def _calls_due(self) -> int:
         """Return how many calls come before the next visit; 0 for none."""
@@ -213,8 +229,12 @@ class PlannedGame:
                 self.winner = person
                 self.vouched -= {person}
                 self.tracker.set_aside(person)
+                if self._asked_before is None:
+                    self._asked_before = frozenset(self.tracker.queue)
+                for other in reversed(self._may_win_as_well(person)):
+                    self.tracker.first(other)
             case "played on":
-                self.winner = ""
+                self.winner, self._asked_before = "", None
                 self.vouched = frozenset()
                 self.tracker.set_aside(person)
                 if self.patterns.advance():
@@ -222,7 +242,7 @@ class PlannedGame:
                 if self.all_called:  # each card may win by the next pattern
                     self._visited = {}
             case "won":
-                self.winner = ""
+                self.winner, self._asked_before = "", frozenset()
                 self._wins_by_word(person)
             case "claimed":
                 self._wins_by_word(person)

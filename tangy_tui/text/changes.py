@@ -31,11 +31,11 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
         case "patterns chosen":
             return f"Next: {pattern_words(activity, event.patterns)}."
         case "others first":
-            return f"{person} has won. Tangy helps the others who are asking first."
+            return f"{person} has won. First Tangy goes to the others who may have won as well."
         case "played on":
             return f"{person} has won. The game goes on."
         case "won":
-            return f"Nobody else is asking. Tangy goes back to {person}, who has won."
+            return f"Tangy goes back to {person}, who has won."
         case "claimed":
             return f"Tangy goes to {person}, whose card wins."
         case "left":
