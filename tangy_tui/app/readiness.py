@@ -78,6 +78,10 @@ class Readiness:
             return [Check(name, "off") for name in names]
         return [self._check(name) for name in names]
 
+    def check(self, name: CheckName) -> Check:
+        """Return one check."""
+        return Check(name, "off") if self.world is None else self._check(name)
+
     @property
     def not_ready(self) -> list[Check]:
         """The failed checks."""

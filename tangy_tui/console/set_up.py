@@ -25,6 +25,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
+from tangy_tui.console.trying_devices import TryingDevices
 from tangy_tui.text import set_up as text
 from tangy_tui.text.control import noted_words
 
@@ -39,6 +40,7 @@ _DUTY = re.compile(r"(?:on )?duty (.+)|(.+) is on duty", re.I)
 _ACTIVITY = re.compile(r"activity (.+)", re.I)
 _ROOM = re.compile(r"room (.+)", re.I)
 _SHOW = "show"
+_TRY = ("try", "try it", "switch on", "check")
 NEAR = 0.7
 """The least similarity of a word to the command that it may have meant."""
 _ACTIVITIES = ("activity", "activities")
@@ -56,14 +58,16 @@ class SetUpLines:
         self._read, self._write = read, write
         self._command = command_reader(setup.workspace.activity, self._find)
         self._told: list[str] = []
+        self._tries = False
 
     def run(self) -> bool:
-        """Set up; return whether to begin the game."""
+        """Set up; return whether to switch the robot on, to begin the game or to try it first."""
         self._tell_all()
         self._write(text.LINES_HELP)
         while (line := self._read()) is not None:
             words = " ".join(line.split()).strip(" .")
-            if words.casefold() == "begin":
+            if words.casefold() in ("begin", *_TRY):
+                self._tries = words.casefold() in _TRY
                 return True
             if words.casefold() == _SHOW:
                 self._tell_all()
@@ -117,6 +121,8 @@ class SetUpLines:
     def begins_anyway(self, *, stopped: bool = False) -> bool:
         """Write the results of the checks; if one has failed, ask whether to begin.
 
+        It also asks if staff want to try the robot first, and carries out what they try.
+
         Args:
             stopped: whether staff stopped the robot while it was switched on: then it asks, too.
         """
@@ -129,15 +135,19 @@ class SetUpLines:
             self._stop()
         if not_ready:
             self._write(text.lines_anyway(not_ready))
-        if not (not_ready or stopped):
+        if self._tries:
+            self._write(text.TRY_LINES)
+        if not (not_ready or stopped or self._tries):
             return True
+        trying = TryingDevices(self.setup, self._write)
         while (line := self._read()) is not None and line.strip().casefold() not in _NO:
             command = self._command_in(line)
             if line.strip().casefold() == "begin" or isinstance(command, GoOn):
                 return True
             if isinstance(command, StopRobot):
+                stopped = True
                 self._stop()
-            else:
+            elif not trying.take(line, command, stopped=stopped):
                 self._write(text.begin_or_end(line.strip()))
         return False
 

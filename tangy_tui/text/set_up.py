@@ -48,6 +48,12 @@ WHOSE = "Whose card is {}?"
 OTHER_ACTIVITY = "Tangy is on: the activity stays. Leave with esc to change it."
 SAID = "Tangy has spoken. Press Enter if you heard it."
 STOPPED = "Tangy was stopped. Begin the game when all is well."
+SAID_BY_LINES = "Tangy has spoken. Type heard if you heard it, or sound to hear it again."
+NO_FACE_BY_LINES = "Tangy knows nobody it sees. Stand closer, and type face again. Or begin."
+TRY_LINES = (
+    "Try Tangy: card reads a card that you hold up, face looks who is there, sound lets it speak. "
+    "Then type begin, or end."
+)
 UNHEARD = "Sound: nobody has said yet that they heard Tangy."
 BEGIN_ANYWAY = "Begin although not everything is ready?"
 LEAVE = "Leave without a game?"
@@ -179,6 +185,11 @@ def card_seen_words(card: str, name: str) -> str:
     return f"Card {card}: {name} is here."
 
 
+def whose_line(card: str) -> str:
+    """Ask at the lines whose card was read."""
+    return f"{WHOSE.format(card)} Type: Rosa has card {card}."
+
+
 def face_seen_words(name: str) -> str:
     """Tell who was recognised, and that they are here."""
     return f"{name} is here."
@@ -223,7 +234,9 @@ def _to_do(check: Check) -> str:
 LINES_HELP = (
     "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
     "activity trivia, room hall, play for line, full card, several winners, pace 20, visits on, "
-    "words gentle, time 40, duty Nina. Show lists everything again. Then: begin. Or: end."
+    "words gentle, time 40, duty Nina. Show lists everything again. "
+    "Try switches Tangy on, so that you can try cards, faces and sound. "
+    "Then: begin. Or: end."
 )
 UNCHANGED = "That changes nothing."
 COMMANDS: Mapping[str, str] = {
@@ -247,6 +260,7 @@ COMMANDS: Mapping[str, str] = {
     "time": "time 40",
     "duty": "duty Nina",
     "show": "show",
+    "try": "try",
     "help": "help",
     "begin": "begin",
     "end": "end",

@@ -80,7 +80,7 @@ class ReportScreen(TangyScreen[None]):
     async def _show(self) -> None:
         session = await asyncio.to_thread(read_report, self._workspace, self.games, self._names)
         command = text.as_page(self.games, last=not self._at)
-        self._lines = (*session_lines(session), *(("", command) if command else ()))
+        self._lines = (*session_lines(session, full=False), *(("", command) if command else ()))
         self.query_one(StatusLine).show(
             Status(mode="report", note=text.place_words(self._at, len(self._sessions)))
         )
