@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -27,13 +28,17 @@ OFTEN = 6  # the most times a sentence counts
 OWN = 4  # how many times each phrase of an activity counts
 EVERY = 6  # one in this many of the sentences that ask for an activity's behaviours is used
 
+_CONTRACTED = re.compile(r"\b(\w+)n't\b")
+_VERBS = {"ca": "can", "wo": "will", "sha": "shall"}
+
 
 def stop_examples(without: str = "") -> tuple[Example, ...]:
     """Return the sentences, in a fixed order, without the written set `without`."""
     found: list[Example] = []
     for texts, meant in ((stop_texts(without), STOP), (other_stop_texts(without), "")):
         for text, times in Counter(texts).items():
-            found += [Example(_plain(words_of(text)), meant)] * min(times, OFTEN)
+            for way in dict.fromkeys((text, in_full(text))):
+                found += [Example(_plain(words_of(way)), meant)] * min(times, OFTEN)
     for text in (*YES, *NO, *steering_texts(WHILE_TEACHING), *steering_texts(IN_GAMES)):
         found += [Example(_plain(words_of(text)), "")] * OWN
     for activity in map(load_activity, shipped_activities()):
@@ -41,6 +46,11 @@ def stop_examples(without: str = "") -> tuple[Example, ...]:
         found += [Example(_plain(words_of(phrase)), "") for phrase in phrases] * OWN
         found += [Example(_plain(e.words), "") for e in examples_of(activity)[::EVERY]]
     return tuple(found)
+
+
+def in_full(text: str) -> str:
+    """Return a text with each "don't" and the like in full: voices say both, writers the short."""
+    return _CONTRACTED.sub(lambda short: f"{_VERBS.get(short[1], short[1])} not", text)
 
 
 def digest_of(examples: Iterable[Example]) -> str:
