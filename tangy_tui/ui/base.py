@@ -172,18 +172,18 @@ class Dialog(ModalScreen[ResultT]):
             self.dismiss(result)
 
     def on_mount(self) -> None:
-        """Clear the toasts, which would cover the dialog."""
+        """Clear the toasts, which would cover the dialog, and watch its size."""
         self.app.clear_notifications()
+        if hasattr(self.below, "covered"):
+            self.screen_layout_refresh_signal.subscribe(self, self._tell_below)
 
     def on_stop(self, message: Stop) -> None:
         """Answer with `no` on STOP."""
         self.answer(self._no)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Cover the dialog if the window is too small, and tell the screen below what it covers."""
+        """Cover the dialog if the window is too small."""
         cover_if_small(self)
-        if hasattr(self.below, "covered"):
-            self.call_after_refresh(self._tell_below)
 
     @property
     def below(self) -> Screen[Any] | None:
@@ -191,10 +191,12 @@ class Dialog(ModalScreen[ResultT]):
         stack = self.app.screen_stack
         return stack[stack.index(self) - 1] if self in stack[1:] else None
 
-    def _tell_below(self) -> None:
+    def _tell_below(self, laid_out: Screen[Any]) -> None:
+        """Tell the screen below what the dialog covers: a hint can add a line to it."""
         below: Any = self.below
         for box in self.query(".box"):
-            below.covered(box.region)
+            if below is not None and box.region:
+                below.covered(box.region)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Cover the dialog if the window is too small."""

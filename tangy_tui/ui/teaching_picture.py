@@ -274,7 +274,13 @@ class TeachingPicture:
         self._screen.query_one("#unseen", Static).update(words)
 
     def covered(self, region: Region) -> None:
-        """Keep what is still to show above a dialog that covers a part of it."""
+        """Keep what is still to show above a dialog that covers a part of it.
+
+        Its own lines may have changed at the same time: they are laid out first.
+        """
+        self._screen.call_after_refresh(self._keep_above, region)
+
+    def _keep_above(self, region: Region) -> None:
         unseen = self._screen.query_one("#unseen", Static).region
         if region.overlaps(unseen) and region.y > unseen.y:
             self._unseen(self._shown.now(), region.y - unseen.y)

@@ -112,6 +112,7 @@ async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -
         await asyncio.sleep(GLANCE if thread else 0)  # lets the loop poll for events, too
         thinks = thread and process_time() - used >= GLANCE / 20
         screen = app._screen_stack[-1] if app._screen_stack else None
+        behind = app._background_screens if screen is not None and not app._exit else []
         if app._resize_event is not None:
             await asyncio.sleep(1 / 120)  # Textual waits this long for a window's last size
             quiet = 0
@@ -119,6 +120,10 @@ async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -
             quiet = 0
         elif screen is not None and not app._exit and _to_be_painted(screen):
             screen._on_timer_update()  # as Textual does at the next sixtieth of a second
+            quiet = 0
+        elif due := [one for one in behind if one._layout_required or one._callbacks]:
+            for covered in due:  # in part, by a dialog
+                covered._on_timer_update()
             quiet = 0
         else:
             quiet += 1

@@ -172,3 +172,22 @@ async def test_a_long_remark_cuts_no_list_in_the_middle(run: Run, workspace: Wor
         both = " ".join(screen_text(pilot.app).splitlines()[unseen.y : unseen.bottom])
         assert "still to show" in both
         assert len(both.split()) > len(one_line.split())
+
+
+@pytest.mark.parametrize("hint", [False, True])
+async def test_a_remark_cuts_nothing_of_the_situations_still_to_show(
+    run: Run, workspace: Workspace, hint: bool
+) -> None:
+    sentence = "Something may be overlooked here: somebody asks for help, and a host goes to them."
+    answers: list[tuple[RemarkAnswer, str]] = [("undo", "a slip: undo this step"), ("this", "fine")]
+    async with run(app=program(workspace)) as pilot:
+        remark = RemarkDialog(sentence, answers, "later")
+        await pilot.app.push_screen(remark)
+        await pilot.pause()
+        if hint:
+            await pilot.press("y")  # which is none of the answers
+            await pilot.pause()
+            assert "Press the number" in screen_text(pilot.app)
+        lines = screen_text(pilot.app).splitlines()[: remark.query_one(".box").region.y]
+    (first,) = (number for number, line in enumerate(lines) if "still to show" in line)
+    assert any("more" in line for line in lines[first:]), "\n".join(lines)
