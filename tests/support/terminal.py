@@ -23,6 +23,9 @@ import pyte
 PATIENCE = 30.0
 """Seconds after which an expected text counts as missing."""
 
+IDLE = 0.15
+"""The share of the processor below which a program counts as idle."""
+
 KEY_PROTOCOL = re.compile(rb"\x1b\[[<>=][0-9;]*u")
 """Turns the kitty keyboard protocol on and off; pyte would write its last letter."""
 
@@ -108,11 +111,26 @@ class Terminal:
         return self.text
 
     def settle(self, seconds: float = 0.5) -> int:
-        """Read until output stops for a while; return the number of bytes."""
-        count = 0
-        while chunk := self.read(seconds):
-            count += len(chunk)
-        return count
+        """Read until output stops for a while, and work with it; return the number of bytes.
+
+        On a busy machine a program is silent before it has drawn what a key asks for.
+        """
+        count, worked, deadline = 0, self._work(), monotonic() + PATIENCE
+        while True:
+            while chunk := self.read(seconds):
+                count += len(chunk)
+            before, worked = worked, self._work()
+            if worked - before <= IDLE * seconds or monotonic() > deadline:
+                return count
+
+    def _work(self) -> float:
+        """Return the CPU seconds of the program, without its children; 0 where none tells."""
+        try:
+            told = Path(f"/proc/{self.process.pid}/stat").read_text(encoding="utf-8")
+        except OSError:
+            return 0.0
+        user, system = told.rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
     def type(self, keys: str) -> None:
         """Type keys."""
