@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import Any, cast
 
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_profiles.activity import load_activity
+from tangy_profiles.game_records import GameBeginning, GameStep
+from tangy_profiles.game_world import LIVE
+from tangy_profiles.known_cards import KnownCards
+from tangy_profiles.past_game import PastGame
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
+from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.simulated_devices_world import BenchedWorld
@@ -88,3 +94,51 @@ def test_a_stuck_sign_can_show_only_if_a_sign_is_seen(
     world = beside_somebody(**silent)
     world.tracker.seen = BINGO.card_states[-1].name
     assert world.can_show(KINDS["request-stuck"], action) == shows
+
+
+class RecordingBench:
+    """A bench that records what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, dict[str, Any]]] = []
+
+    def do(self, what: str, **how: Any) -> dict[str, Any]:
+        self.told.append((what, how))
+        truth = {"faults": [], "asking": [], "spoken": [], "place": "front"}
+        return {"truth": truth}
+
+
+def test_the_people_of_a_resumed_game_keep_their_cards_and_requests() -> None:
+    truth = Tracker(BINGO, PEOPLE)
+    steps: list[GameStep] = []
+    for number, name in enumerate(("greeting", "call number", "call number")):
+        before = truth.state()
+        truth.executed(BINGO.behaviours[name], succeeded=True)
+        if number == 2:
+            truth.ask("user2")  # while the number was called
+        numbers = (7, 23)[number - 1 : number] if number else ()
+        after = truth.state()
+        steps.append(
+            GameStep(
+                game="g", behaviour=name, target=None, numbers=numbers, state=before, after=after
+            )
+        )
+    past = PastGame(
+        GameBeginning(game="g", number=1, activity="bingo", people=PEOPLE, world=LIVE),
+        datetime.now(UTC),
+        tuple(steps),
+        cards=KnownCards(seen={"user1": 12}, given={"user2": 30}),
+    )
+    bench = RecordingBench()
+    world = BenchedWorld(
+        BINGO, PEOPLE, cast(RobotLink, FakeLink(PEOPLE)), load_robot(), load_room(), seed=1
+    )
+    world.on(cast(DeviceSimulator, bench))
+    world.resume(past)
+    rules = [how for what, how in bench.told if what == "rules"]
+    cards, called = {"user1": 12, "user2": 30}, [7, 23]
+    assert rules[0] == {"called": called, "cards": cards}  # before the first look at a card
+    assert {**rules[-1], "called": [*rules[-1]["called"]]} == {
+        "called": called, "cards": cards, "asking": ["user2"], "away": [],
+        "patterns": list(BINGO.deck.patterns), "together": BINGO.deck.together,
+    }  # fmt: skip
