@@ -41,6 +41,11 @@ def test_similar_sentences_do_not_stop(said: str) -> None:
     assert not stops(said)
 
 
+@pytest.mark.parametrize("said", ["do not stop", "no do not stop", "please do not stop the game"])
+def test_a_negation_in_full_is_as_unlikely_as_its_short_form(said: str) -> None:
+    assert stop_likelihood(tuple(said.split())) < 0.2
+
+
 def test_an_unknown_sentence_has_a_moderate_likelihood() -> None:
     assert 0 < stop_likelihood(("zyxt", "qwv")) < 0.6
 
