@@ -17,6 +17,7 @@ from tangy_profiles.room import SEAT
 from tangy_tui.app.chosen_activity import choosable
 from tangy_tui.app.game_commands import Joins, StaffNote
 from tangy_tui.app.joining import known_refusal, let_join
+from tangy_tui.app.last_plan import last_plan
 from tangy_tui.app.on_duty import on_duty, take_duty
 from tangy_tui.app.readiness import Readiness
 from tangy_tui.app.rooms import KnownRoom, choose_room, find_room, known_rooms
@@ -60,6 +61,21 @@ class SetUp(Readiness):
         set_up = cls(workspace, pace=pace, on_duty=on_duty(workspace.store.folder))
         set_up._seat_as_before()
         return set_up
+
+    def offer_last_plan(self) -> None:
+        """Offer what staff chose last for this activity; who was away only on the same day."""
+        last = last_plan(self.workspace.store, self.workspace.activity.name)
+        if last is None:
+            return
+        rules = self.workspace.activity.rules
+        self.patterns = [one.name for one in rules.patterns if one.name in last.patterns]
+        self.patterns.sort(key=last.patterns.index)
+        self.several, self.visits, self.minutes = last.several, last.visits, last.minutes
+        if last.strength in (one.name for one in rules.strengths):
+            self.strength = last.strength
+        if last.pace and self.pace == USUAL_PACE:
+            self.pace = last.pace
+        self.away = {person for person in last.absent if person in self.seats}
 
     # ----------------------------------------------------------------------------- the choices
 

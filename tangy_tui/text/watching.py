@@ -46,6 +46,8 @@ READ_ONLY = "You are watching. Your keys do not change the game; only STOP stops
 NOBODY = "No Tangy runs here. This screen shows a game as soon as one begins."
 NO_GAME = "Tangy is open here, but no game has begun yet."
 GONE = "The program that ran the game has ended."
+CLOSED = "That Tangy was closed."
+"""The same, if it had no game."""
 NOTHING_TO_STOP = "There is no game to stop: no Tangy shows one here."
 RUNNING_HERE = "Tangy is already open in another window, so here you only watch."
 ASKED_TO_STOP = "STOP was sent."

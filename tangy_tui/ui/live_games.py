@@ -80,6 +80,8 @@ async def play_live(
 
     workspace = program.workspace
     setup = SetUp.of(workspace, pace)
+    if set_up:
+        setup.offer_last_plan()
     if past is not None:  # the set-up has seated people as they sat when the game began
         workspace.gather(past.beginning.people)
     played = await _play(

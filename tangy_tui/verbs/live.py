@@ -316,7 +316,9 @@ def _set_up(workspace: Workspace, pace: float) -> SetUpLines | None:
 
     if not is_typed(None):
         return None
-    return SetUpLines(SetUp.of(workspace, pace), line_reader(None), common.print_line)
+    setup = SetUp.of(workspace, pace)
+    setup.offer_last_plan()
+    return SetUpLines(setup, line_reader(None), common.print_line)
 
 
 def _listed(given: list[str]) -> tuple[Injection, ...]:

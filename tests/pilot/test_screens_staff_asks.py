@@ -22,10 +22,13 @@ from tangy_tui.ui import run as opening
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.app.test_interruption import Robot
-from tests.pilot.conftest import SMALL, screen_text
+from tests.pilot.conftest import SMALL, StillClock, screen_text
+from tests.pilot.faults import game_of, halting, playing
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
 from tests.support.waiting import until_shown
 
@@ -67,6 +70,7 @@ async def test_the_question_about_a_call_tells_of_a_call_that_came_meanwhile(
         assert meanwhile in world.called_now
 
 
+@pytest.mark.slow
 async def test_a_refused_command_is_typed_over_or_replaced_by_a_similar_one(
     run: Run, workspace: Workspace
 ) -> None:
@@ -154,3 +158,31 @@ def test_a_game_left_open_by_the_program_begun_at_home_is_told(
     opening.run_program(workspace, ascii_only=False)  # this time it was not played
     assert told not in capsys.readouterr().out
     workspace.close()
+
+
+@pytest.mark.slow
+async def test_the_state_of_an_interrupted_game_stands_behind_the_question_if_all_is_well(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy)) as pilot:
+        screen, game, world = game_of(pilot)
+        while not world.scene().called:
+            await pilot.press("full_stop")
+            await pilot.pause()
+        await halting(pilot)
+        await pilot.press("ctrl+q")
+    past = find_interrupted(workspace, world.played_in)
+    assert past is not None
+    called = tuple(past.called(workspace.activity))
+
+    async def start(program: Program) -> None:
+        again = workspace.supervision(policy, past.beginning.seed, asks=True)
+        await program.push_screen(PlayScreen(workspace, again, past=past))
+
+    async with run(app=Program(workspace, start, clock=StillClock())) as pilot:
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        screen, game, _ = game_of(pilot)
+        assert game.over
+        assert screen.query_one(RoomView).scene.called == called
+        label = workspace.activity.deck.label(called[-1])
+        assert label in screen_text(pilot.app)

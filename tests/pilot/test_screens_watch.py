@@ -30,7 +30,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.text.control import autonomy_words
 from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
-from tangy_tui.text.watching import NO_GAME, PHASES, WORLDS, robot_words
+from tangy_tui.text.watching import CLOSED, GONE, NO_GAME, PHASES, WORLDS, robot_words
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -204,3 +204,29 @@ async def test_an_onlooker_reads_that_no_game_has_begun(
     with Store.open(data_folder, write=False) as store:
         async with run(WatchScreen(Guest(data_folder), store, who="Bea"), size=LARGE) as pilot:
             await until_shown(pilot, lambda: NO_GAME in " ".join(pilot.text().split()))
+
+
+async def test_the_keys_of_the_game_say_that_they_do_nothing_here(
+    data_folder: Path, workspace: Workspace, run: Run
+) -> None:
+    workspace.door.open()
+    with Store.open(data_folder, write=False) as store:
+        screen = WatchScreen(Guest(data_folder), store, who="Bea")
+        async with run(screen, size=LARGE, notifications=True) as pilot:
+            await until_shown(pilot, lambda: NO_GAME in " ".join(pilot.text().split()))
+            assert not screen.query("Toast")
+            await pilot.press("p")
+            await until_shown(pilot, lambda: bool(screen.query("Toast")))
+
+
+async def test_a_program_that_is_closed_without_a_game_had_none(
+    data_folder: Path, workspace: Workspace, run: Run
+) -> None:
+    workspace.door.open()
+    with Store.open(data_folder, write=False) as store:
+        screen = WatchScreen(Guest(data_folder), store, who="Bea")
+        async with run(screen, size=LARGE) as pilot:
+            await until_shown(pilot, lambda: NO_GAME in " ".join(pilot.text().split()))
+            workspace.door.close()
+            await until_shown(pilot, lambda: CLOSED in pilot.text())
+            assert GONE not in pilot.text()

@@ -242,6 +242,8 @@ class PlayScreen(PlayStaff):
 
     async def _may_begin(self) -> bool:
         """Ask before a game begins after one with an uncleared fault."""
+        if self.control.past is not None:
+            self.show_staff()
         if not self._supervision.over or await self._faults.all_well():
             return True
         self.games = self.tally.games

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from textual.app import ComposeResult
@@ -36,6 +37,7 @@ from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
@@ -129,6 +131,10 @@ class PlayPanels(TangyScreen[Tally]):
         """Update the view for staff."""
         world, name = self._supervision.world, staff_names(self._workspace.name)
         view = self.control.view()
+        if (past := self.control.past) is not None and self._supervision.over:  # staff are asked
+            called = tuple(past.called(world.activity))
+            view = replace(view, seconds=past.seconds, called=called, paused=0.0)
+            self.query_one(RoomView).show(replace(world.scene(), called=called))
         show_view(
             self.query_one(StaffPanel),
             self.query_one(CallBoard),

@@ -55,7 +55,9 @@ def _next(shown: ViewSource) -> str:
     control, world = shown.control, shown.world
     if control.supervision.over:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
-        return f"{text.OVER} {said}".rstrip() if control.supervision.games else ""
+        if not control.supervision.games:
+            return text.PAUSED if control.past is not None else ""
+        return f"{text.OVER} {said}".rstrip()
     if control.stopped:
         return f"{stopped_words(control.stopped_by)}."
     if control.welcomes:

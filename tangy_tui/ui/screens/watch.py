@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
@@ -27,6 +28,7 @@ from tangy_tui.text.log import game_words, moment_lines
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
 from tangy_tui.ui.screens.play_view import person_lines
@@ -37,6 +39,11 @@ from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 ALARMS = ("stopped", "halted")
+OF_THE_GAME = (
+    *("pause", "step", "faster", "slower", "autonomy", "take_over", "drive", "call_again"),
+    *("ask_for", "claim", "presence", "whose_card", "tell", "undo", "command"),
+)
+"""Actions of staff whose keys an onlooker may press."""
 KINDS: dict[type, Kind] = {
     Diagnosed: "warn",
     Moved: "dim",
@@ -99,6 +106,13 @@ class WatchScreen(TangyScreen[None]):
         """Disconnect."""
         self._guest.close()
 
+    def on_key(self, event: events.Key) -> None:
+        """Tell that a key of the game does nothing here."""
+        if keymap_of(self.app).action(event.key) in OF_THE_GAME:
+            event.stop()
+            self.app.clear_notifications()
+            self.notify(text.READ_ONLY, markup=False)
+
     def on_stop(self, message: Stop) -> None:
         """Stop the robot first, then redraw."""
         if getattr(self.app, "leaving", False):
@@ -118,8 +132,9 @@ class WatchScreen(TangyScreen[None]):
         self._tell_log()
         if was and not self._there:
             over = self._view is None or self._log.over
-            self.query_one(LogView).write(text.GONE, "warn")
-            if not over:
+            gone = text.CLOSED if self._view is None else text.GONE
+            self.query_one(LogView).write(gone, "warn")
+            if not over and self._view is not None:
                 self.query_one(LogView).write(GOES_ON_LATER, "warn")
         if self._guest.stops > stops:
             self.query_one(LogView).write(text.STOPPED_HERE, "bad")

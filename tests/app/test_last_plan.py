@@ -1,0 +1,60 @@
+"""The set-up offers what staff chose for their last game."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.game_rules import GamePlan
+from tangy_tui.app.game_commands import ComesIn, GoesAway, GoOn, SetPace
+from tangy_tui.app.last_plan import last_plan
+from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.workspace import Workspace
+from tests.app.test_interruption import Robot
+
+PLAN = GamePlan(("two lines", "line"), True, True, "", ("user3",), 20.0, 40)
+
+
+@pytest.fixture
+def data_folder(taught: Path) -> Path:
+    """A folder with three demonstrations and a policy learnt from them."""
+    return taught
+
+
+def test_without_a_game_the_set_up_offers_its_usual_choices(workspace: Workspace) -> None:
+    setup = SetUp.of(workspace)
+    before = setup.plan
+    setup.offer_last_plan()
+    assert setup.plan == before
+
+
+def test_the_set_up_offers_the_last_plan_with_its_changes(workspace: Workspace) -> None:
+    robot = Robot(workspace)
+    robot.control.abandon()
+    robot.control.apply(GoOn())
+    robot.world.choose(PLAN)
+    robot.control.begin()
+    for command in (SetPace(15.0), GoesAway("user1"), ComesIn("user3")):
+        robot.control.apply(command)
+    setup = SetUp.of(workspace)
+    setup.offer_last_plan()
+    assert setup.plan == replace(PLAN, absent=("user1",), pace=15.0)
+    given = SetUp.of(workspace, 45.0)  # on the command line
+    given.offer_last_plan()
+    assert given.pace == 45.0
+
+
+def test_who_was_away_on_another_day_is_expected_again(workspace: Workspace) -> None:
+    robot = Robot(workspace)
+    robot.control.abandon()
+    robot.control.apply(GoOn())
+    robot.world.choose(PLAN)
+    robot.control.begin()
+    name = workspace.activity.name
+    today, tomorrow = datetime.now(UTC), datetime.now(UTC) + timedelta(days=1)
+    assert last_plan(workspace.store, name, today) == PLAN
+    assert last_plan(workspace.store, name, tomorrow) == replace(PLAN, absent=())
+    assert last_plan(workspace.store, "another") is None
