@@ -15,7 +15,7 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable, bar
 from tangy_tui.ui.widgets.posteriors import Posteriors, curve
-from tangy_tui.ui.widgets.rows import fit, shorten
+from tangy_tui.ui.widgets.rows import fit, shorten, shorten_name
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tangy_tui.ui.widgets.wrapping import wrap
@@ -388,6 +388,19 @@ def test_fit_shorten_and_wrap_count_cells() -> None:
     assert fit("x", 0) == ""
     assert shorten("abcdef", 4) == "abc…"
     assert shorten("abc", 4) == "abc"
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "shown"),
+    [
+        ("User 12", 4, "U…12"),
+        ("User 12", 7, "User 12"),
+        ("User 12", 3, "Us…"),
+        ("Rosalind", 5, "Rosa…"),
+    ],
+)
+def test_a_name_that_is_cut_keeps_its_number(name: str, width: int, shown: str) -> None:
+    assert shorten_name(name, width) == shown
     assert wrap("one two three", 7) == ["one two", "three"]
     assert wrap("abcdefghij", 4) == ["abcd", "efgh", "ij"]
     assert wrap("", 4) == [""]

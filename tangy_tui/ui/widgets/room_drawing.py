@@ -13,7 +13,7 @@ from tangy_tui.text.typed_commands import AWAY
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.card_lines import LEGEND, card_lines
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan
-from tangy_tui.ui.widgets.rows import Row, shorten
+from tangy_tui.ui.widgets.rows import Row, shorten, shorten_name
 from tangy_tui.ui.widgets.wrapping import wrap
 
 FLOOR_DOTS = 8  # columns between dots
@@ -157,7 +157,7 @@ class RoomDrawing:
         ink = "warn" if asking else "dim" if away else "person"
         turn = f"?{scene.requests.index(person.id) + 1}" if asking else ""
         self._lines[row].put(centre, f"{'○' if away else '●'}{turn}", ink)
-        name = shorten(clean(person.name), width)
+        name = shorten_name(clean(person.name), width)
         self._lines[row + 1 + below].within(centre, *within, name, ink)
         if deep > 1:
             return  # names use the lines for people's activities

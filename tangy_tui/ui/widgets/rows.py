@@ -35,6 +35,14 @@ def shorten(text: str, width: int) -> str:
     return set_cell_size(text, width - 1).rstrip() + "…" if width > 0 else ""
 
 
+def shorten_name(name: str, width: int) -> str:
+    """Return a name in at most `width` cells; a number at its end is kept: "User 12" as "U…12"."""
+    number = name[len(name.rstrip("0123456789")) :]
+    if cell_len(name) <= width or not number or len(number) + 2 > width:
+        return shorten(name, width)
+    return shorten(name[: -len(number)], width - len(number)) + number
+
+
 def draw(widget: InkedWidget, row: Row, width: int, over: str = "") -> Strip:
     """Draw one line over the whole width of a widget."""
     segments = [
