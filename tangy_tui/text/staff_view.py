@@ -27,7 +27,7 @@ NOTHING_CALLED = "nothing called yet"
 PAUSED = "Paused."
 TIME_FIRST = ", once everybody has had time"
 """Why Tangy does not call the next number yet."""
-OVER = "The game is over. Its report: tangy report."
+OVER = "The game is over. For its report, choose Reports at home."
 
 
 def clock_words(seconds: float) -> str:

@@ -18,8 +18,9 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.text.games import NONE_YET
 from tangy_tui.text.session_reports import REPORTS, games_title
+from tangy_tui.text.staff_view import OVER
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.home import CHOICES, HomeScreen
 from tangy_tui.ui.screens.report import ReportScreen
 from tests.app.test_interruption import Interrupted
 from tests.pilot.conftest import StillClock, screen_text
@@ -90,3 +91,8 @@ async def test_the_list_of_all_commands_finds_the_report(run: Run, workspace: Wo
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("ctrl+p", *"report")
         await until_shown(pilot, lambda: REPORTS[0] in screen_text(pilot.app))
+
+
+def test_the_end_of_a_live_game_names_the_way_to_its_report() -> None:
+    (item,) = [choice for choice in CHOICES if choice.id == "reports"]
+    assert item.name in OVER
