@@ -353,7 +353,7 @@ class StaffLines:
         if command is not None and read_answer(text) is None:
             self._sure.give_way(command)
         if self._sure.open:
-            self._telling.write_all(told or ())
+            self._telling.write_all(told or () if read_answer(text) is None else ())
             if (confirmed := self._sure.answer(text)) is not None:
                 self._carry_out(confirmed)
                 self._do_next(self._sure.end_of_hold())

@@ -27,6 +27,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.staff import StaffLines
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.policies import load_policy
+from tangy_tui.text.questions import NO_QUESTION
 from tests.app.test_interruption import Robot
 
 PATIENCE = 20.0  # s
@@ -162,6 +163,7 @@ def test_a_question_of_staff_is_answered_and_the_open_one_asked_again(
         ("End the game?", "end"), ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
     assert told.count("End the game?") == 3 and "Not done." not in told
+    assert NO_QUESTION not in told  # its yes is an answer, and no question of staff
     assert workspace.name("user3") in told.split("End the game?")[1]
 
 
