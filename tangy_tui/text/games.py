@@ -220,7 +220,7 @@ def earlier_steps_words(steps: int) -> str:
     """Tell where to read the steps before an interruption."""
     if not steps:
         return "No steps yet."
-    return f"{counted(steps, 'step')} before the interruption: see `tangy log show last`."
+    return f"{counted(steps, 'earlier step')}: see `tangy log show last`."
 
 
 def over_words(ended: GameEnded) -> str:

@@ -61,7 +61,7 @@ async def test_an_interrupted_game_resumes_paused_with_its_steps(
         assert isinstance(screen, PlayScreen)
         await until(lambda: screen.query_one(Transcript).count == STEPS)
         assert str(screen.control.phase) == "paused"
-        assert f"{STEPS} steps before the interruption" in pilot.text()
+        assert f"{STEPS} earlier steps" in pilot.text()
         await pilot.press("full_stop")
         await until(lambda: screen.query_one(Transcript).count == STEPS + 1)
         await pilot.press("full_stop")
