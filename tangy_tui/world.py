@@ -92,6 +92,21 @@ class Remembering(Protocol):
         ...
 
 
+@runtime_checkable
+class Queueing(Protocol):
+    """A world in which people ask for help whenever they like, as no replay can tell."""
+
+    @property
+    def queue(self) -> tuple[str, ...]:
+        """Who asks for help, in the order in which they are served."""
+        ...
+
+
+def queue_of(world: World) -> tuple[str, ...] | None:
+    """Return who asks for help, to be logged; None if the steps are enough."""
+    return world.queue if isinstance(world, Queueing) else None
+
+
 def remembered(world: World) -> GameMemory | None:
     """Return the facts of a game to be logged; None if its steps are enough."""
     return world.memory if isinstance(world, Remembering) else None

@@ -144,8 +144,9 @@ class GameStep(EventRecord):
     """An executed behaviour: how it was chosen, and the states before and `after` it.
 
     `seconds` is its duration, and `clock` the time played when it ended, including pauses between
-    steps; old logs lack them. `memory` holds the facts of a live game of an activity by facts,
-    which the steps alone do not determine.
+    steps; old logs lack them. `asking` is who asks for help in a live game, in the order of the
+    queue, also while `after` shows no requests because numbers are called first. `memory` holds
+    the facts of a live game of an activity by facts, which the steps alone do not determine.
     """
 
     game: str
@@ -161,6 +162,7 @@ class GameStep(EventRecord):
     clock: Sparse[float | None] = None
     state: GameState
     after: GameState | None = None
+    asking: Sparse[tuple[str, ...] | None] = None
     memory: Sparse[GameMemory | None] = None
 
     def invalid_reason(self) -> str:

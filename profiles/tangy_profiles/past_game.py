@@ -173,7 +173,10 @@ class PastGame:
         return max(self.acted, self.clock[-1] if self.steps else 0.0)
 
     def asked(self, activity: Activity) -> dict[str, float]:
-        """Return since when each person has waited for the robot, in s of the time played."""
+        """Return since when each person has waited for the robot, in s of the time played.
+
+        They stand in the order of the queue, as far as the log has it.
+        """
         requests, since, over = OpenRequests(), dict[str, float](), 0.0
         for number, (step, over) in enumerate(zip(self.steps, self.clock, strict=True)):
             self._change(requests.change, self.beginning.game, number)
@@ -182,7 +185,8 @@ class PastGame:
             requests.step(step.state, step.after or step.state, called=called)
             seen = {user.id for user in step.state.users if user.request == "AR"}
             begun = over - (step.seconds or 0.0)
-            since = {p: since.get(p, begun if p in seen else over) for p in requests.people}
+            people = requests.people if step.asking is None else step.asking
+            since = {p: since.get(p, begun if p in seen else over) for p in people}
         return since
 
     def replay(self, world: ReplayedWorld) -> ActivityState:
@@ -233,6 +237,8 @@ class PastGame:
         for number, step in enumerate(self.steps, start=1):
             if not tracker.follow(step):
                 raise NotResumable(OTHERWISE)
+            if step is self.steps[-1] and step.asking is not None:
+                tracker.queue = [*step.asking]  # the states show neither its order nor all of it
             self._change(change, self.beginning.game, number)
 
     def visited(self, activity: Activity) -> dict[str, int]:

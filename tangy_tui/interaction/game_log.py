@@ -8,7 +8,7 @@ from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import Acted
-from tangy_tui.world import World, remembered
+from tangy_tui.world import World, queue_of, remembered
 
 
 class GameLog:
@@ -59,6 +59,7 @@ class GameLog:
                 clock=self.seconds,
                 state=acted.state,
                 after=acted.after,
+                asking=queue_of(self._world),
                 memory=remembered(self._world),
             )
         )

@@ -360,7 +360,9 @@ def test_a_request_seen_before_a_step_is_as_old_as_the_step(taught: Path) -> Non
             for user in last.state.users
         ),
     )
-    drive = replace(last, state=asking, after=None, seconds=33.0, clock=past.clock[-2] + 40.0)
+    drive = replace(
+        last, state=asking, after=None, asking=("user3",), seconds=33.0, clock=past.clock[-2] + 40
+    )
     long_drive = replace(past, steps=(*past.steps[:-1], drive))
     since = long_drive.asked(workspace.activity)["user3"]
     assert since == pytest.approx(long_drive.clock[-1] - 33.0)
@@ -471,3 +473,32 @@ def test_replaying_the_log_of_any_game_gives_its_state(room: Interrupted) -> Non
         assert tracker.follow(event.record)
         followed += 1
     assert len(trackers) == 6 and followed > 200
+
+
+def test_a_resume_keeps_the_order_of_the_queue_and_requests_during_calls(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(3)
+    for person in ("user4", "user2"):  # not the order of their seats
+        before.control.apply(AskFor(person))
+    begun = interrupted_game(workspace.store, workspace.activity.name)
+    assert begun is not None
+    first = GameChange(game=begun.beginning.game, steps=3, what="calls first", number=8)
+    workspace.store.append(first)
+    before.world.change(first)  # so the states show no requests
+    before.next(1)
+    before.control.apply(AskFor("user1"))
+    before.next(2)
+    queue = before.world.scene().requests
+    assert queue == ("user4", "user2", "user1") and not before.world.observe().attended
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    since = past.asked(workspace.activity)
+    assert tuple(since) == queue
+    assert since["user4"] <= since["user2"] < since["user1"] < past.clock[-1]
+    after = Robot(workspace, past)
+    assert after.world.scene().requests == queue
+    after.link.time += 60.0
+    after.control.next()
+    assert after.world.scene().requests == queue
+    workspace.close()

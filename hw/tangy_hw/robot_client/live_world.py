@@ -125,8 +125,8 @@ class LiveWorld(LivePlan):
         for _ in range(past.beginning.number):
             self._begin()  # each game of the run has its own order
         past.follow(self.tracker, self.change)
-        late = [one for one in past.asked_for if one not in self.away]
-        self.requests.resume([*self.tracker.queue, *late])
+        asked = (*self.tracker.queue, *past.asked_for)  # these after the last step
+        self.requests.resume([one for one in asked if one not in self.away])
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
@@ -349,20 +349,18 @@ class LiveWorld(LivePlan):
 
     # ------------------------------------------------------------------------ scene
 
+    @property
+    def queue(self) -> tuple[str, ...]:
+        """Who asks for help, in the order in which they are served; after the game nobody."""
+        return () if self.over else tuple(self.tracker.queue)
+
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""
-        tracker = self.tracker
-        asking = () if self.over else tuple(tracker.queue)  # after the game nobody is served
-        view = self.cards.view
+        tracker, asking, view = self.tracker, self.queue, self.cards.view
         doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
-        return Scene(
-            self.link.state.going or tracker.place,
-            asking,
-            doing,
-            tuple(self.called),
-            view if view is not None and view.person == tracker.place else None,
-            self.away,
-        )
+        seen = view if view is not None and view.person == tracker.place else None
+        place = self.link.state.going or tracker.place
+        return Scene(place, asking, doing, tuple(self.called), seen, self.away)
 
     @property
     def pauses(self) -> tuple[int, float]:
