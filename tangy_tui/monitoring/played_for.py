@@ -14,18 +14,22 @@ from tangy_tui.monitoring.replay import Done, GameReplay, Moment
 
 @dataclass(frozen=True, slots=True)
 class PlayedFor:
-    """A pattern of a game, and its winners in order; "" for an activity without named patterns."""
+    """A pattern of a game, and its winners in order; "" for an activity without named patterns.
+
+    The game can end before a chosen pattern is `reached`.
+    """
 
     pattern: str
     winners: tuple[str, ...] = ()
+    reached: bool = True
 
     def to_json(self) -> dict[str, Any]:
         """Return the pattern and its winners as `--json` prints them."""
-        return {"pattern": self.pattern, "winners": list(self.winners)}
+        return {"pattern": self.pattern, "winners": list(self.winners), "reached": self.reached}
 
 
 def played_for(replay: GameReplay) -> tuple[PlayedFor, ...]:
-    """Return the patterns that a game was played for, in order, up to the last one reached.
+    """Return the patterns that were chosen for a game, in order, with those not reached.
 
     It is empty if the activity is unknown or nobody can win in it. The activity's own pattern has
     the name of the pattern that staff could have chosen for it.
@@ -59,7 +63,7 @@ def played_for(replay: GameReplay) -> tuple[PlayedFor, ...]:
             case _:
                 pass
     end()
-    return tuple(found)
+    return (*found, *(PlayedFor(one.name, reached=False) for one in patterns.left))
 
 
 def _order(moment: Moment) -> tuple[int, str]:

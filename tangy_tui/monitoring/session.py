@@ -21,7 +21,7 @@ from tangy_tui.monitoring.played_for import PlayedFor, played_for
 from tangy_tui.monitoring.player_facts import PlayerFacts, player_facts
 from tangy_tui.monitoring.presence import Stay, stays
 from tangy_tui.monitoring.replay import GameReplay, Noted, activities_of, read_replays
-from tangy_tui.monitoring.standstills import halts, interruptions
+from tangy_tui.monitoring.standstills import answer_waits, halts, interruptions
 
 SET_ASIDE = "set aside"
 """The remedy that leaves a person alone: staff should look after them."""
@@ -132,6 +132,11 @@ class Session:
         return PauseTotal.of(map(halts, self.replays))
 
     @property
+    def answer_waits(self) -> PauseTotal:
+        """When games waited for staff to say what to do, in all."""
+        return PauseTotal.of(map(answer_waits, self.replays))
+
+    @property
     def interruptions(self) -> PauseTotal:
         """When games were interrupted and resumed, in all; not part of `seconds`."""
         return PauseTotal.of(map(interruptions, self.replays))
@@ -159,6 +164,7 @@ class Session:
             "seconds": self.seconds if self.timed else None,
             "staff_pauses": self.staff_pauses.to_json(),
             "halts": self.halts.to_json(),
+            "answer_waits": self.answer_waits.to_json(),
             "interruptions": self.interruptions.to_json(),
             "games": [
                 {
@@ -166,6 +172,7 @@ class Session:
                     "seconds": r.seconds if r.timed else None,
                     "staff_pauses": r.staff_pauses.to_json(),
                     "halts": halts(r).to_json(),
+                    "answer_waits": answer_waits(r).to_json(),
                     "interruptions": interruptions(r).to_json(),
                     "played_for": [one.to_json() for one in played_for(r)],
                 }

@@ -1,13 +1,17 @@
-"""When a game stood still though staff had not paused it: halts, and interruptions."""
+"""When a game stood still though staff had not paused it: halts, questions, and interruptions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from datetime import datetime
 
+from tangy_profiles.game_records import MoveKind
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.pauses import PauseTotal
-from tangy_tui.monitoring.replay import GameReplay, Moment, Noted
+from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted
+
+ANSWERS: tuple[MoveKind, ...] = ("taught", "accepted", "went on", "given up", "left open")
+"""What ends a question to staff."""
 
 
 def halts_in(replay: GameReplay) -> Iterator[tuple[Moment, Moment | None]]:
@@ -31,6 +35,32 @@ def halts(replay: GameReplay) -> PauseTotal:
         for begun, over in halts_in(replay)
     ]
     return PauseTotal(len(lengths), sum(lengths))
+
+
+def answer_waits(replay: GameReplay) -> PauseTotal:
+    """Return how often a game waited for staff to say what to do, and for how many s.
+
+    A wait ends as the next behaviour begins, or with the answer, whichever is first: the log has
+    an answer that leads to a behaviour only after it, and a call may be due later.
+    """
+    lengths = list[float]()
+    asked: Moment | None = None
+    for moment in replay.moments:
+        match moment.what:
+            case Moved() as moved if moved.move.kind == "teacher asked":
+                asked = moment
+            case Moved() as moved if asked is not None and moved.move.kind in ANSWERS:
+                since, until = (datetime.fromisoformat(one.at) for one in (asked, moment))
+                lengths.append((until - since).total_seconds())
+                asked = None
+            case Done(begun=begun) if asked is not None:
+                lengths.append(begun - asked.seconds)
+                asked = None
+            case _:
+                pass
+    if asked is not None:
+        lengths.append(replay.seconds - asked.seconds)
+    return PauseTotal(len(lengths), sum(max(0.0, one) for one in lengths))
 
 
 def interruptions(replay: GameReplay) -> PauseTotal:

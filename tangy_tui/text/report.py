@@ -59,11 +59,15 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 def how_long_words(session: Session) -> str:
     """Tell how long the games lasted, were paused, halted by faults, and interrupted."""
     pauses, halts, breaks = session.staff_pauses, session.halts, session.interruptions
+    asked = session.answer_waits
     part = [
         f"{length(pauses.seconds)} in {counted(pauses.count, 'pause')}"
         if pauses.seconds >= 1
         else "",
         f"{length(halts.seconds)} in which a fault stopped Tangy" if halts.seconds >= 1 else "",
+        f"{length(asked.seconds)} in which Tangy waited for an answer of staff"
+        if asked.seconds >= 1
+        else "",
     ]
     words = listed(filter(None, part))
     told = f"{length(session.seconds)}{f', of which {words}' if words else ''}"

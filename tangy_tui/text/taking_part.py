@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tangy_tui.text.situations import Name
 
 PLAYED_FOR = "Played for"
-WON, NOBODY_WON = "Who won", "nobody won"
+WON, NOBODY_WON, NOT_REACHED = "Who won", "nobody won", "not reached"
 MOST_GAMES = 24
 """Of more games a report does not tell one by one what they were played for."""
 
@@ -37,6 +37,7 @@ def played_for_rows(session: Session) -> list[tuple[str, str]]:
 
 def _pattern_words(replay: GameReplay, one: PlayedFor, name: Name) -> str:
     who = f"{listed(dict.fromkeys(map(name, one.winners)))} won" if one.winners else NOBODY_WON
+    who = who if one.reached else NOT_REACHED
     return f"{pattern_words(replay.activity, (one.pattern,))} ({who})" if one.pattern else who
 
 

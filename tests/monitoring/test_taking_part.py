@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tangy_profiles.game_records import GameChange
+from tangy_profiles.game_records import GameChange, MoveKind
 from tangy_profiles.game_rules import GamePlan
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.game_commands import ChoosePatterns, ComesIn, GoesAway
@@ -22,9 +22,9 @@ from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.played_for import PlayedFor, played_for
 from tangy_tui.monitoring.presence import Stay, stays
-from tangy_tui.monitoring.replay import GameReplay, Moment, Noted, What
+from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted, What
 from tangy_tui.monitoring.session import Session, read_session
-from tangy_tui.monitoring.standstills import halts, halts_in, interruptions
+from tangy_tui.monitoring.standstills import answer_waits, halts, halts_in, interruptions
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import session_lines
 from tangy_tui.text.report import care_lines, how_long_words
@@ -115,6 +115,8 @@ def test_a_choice_of_patterns_counts_for_the_win_after_it(workspace: Workspace) 
         staff_changes=[moment(1, chosen)],
     )  # fmt: skip
     assert [one.pattern for one in played_for(replay)] == ["line", "x"]
+    early = played_for(replace(replay, moments=[]))  # it ended before
+    assert early == (PlayedFor("line"), PlayedFor("x", reached=False))
     other = replace(replay, game=replace(ONE, patterns=("gone",)))  # the activity has changed
     assert played_for(other) == (PlayedFor(""),)
 
@@ -190,6 +192,34 @@ def test_a_halt_lasts_until_staff_clear_it(workspace: Workspace, supervise: Supe
     assert halts(replay) == PauseTotal(1, over.seconds - begun.seconds)
     still = replace(replay, moments=[begun], seconds=begun.seconds + 60.0)
     assert halts(still) == PauseTotal(1, 60.0)
+
+
+def test_a_wait_for_staff_ends_with_their_answer_or_the_next_step(
+    workspace: Workspace, supervise: Supervise
+) -> None:
+    play(supervise("laser-disconnected@6"))
+    session = session_of(workspace)
+    (replay,) = session.replays
+    halted = next(one.what for one in replay.moments if isinstance(one.what, Moved))
+    step = next(one.what for one in replay.moments if isinstance(one.what, Done))
+
+    def moved(minutes: float, kind: MoveKind) -> Moment:
+        return moment(minutes, replace(halted, move=replace(halted.move, kind=kind)))
+
+    asked, taught = moved(1, "teacher asked"), moved(7.5, "taught")
+    done = moment(7, replace(step, begun=360.0, over=420.0))
+    ways = [
+        ([asked, done, taught], 300.0),  # the log has the answer after the step
+        ([asked, moved(3, "accepted"), done], 120.0),
+        ([asked], 540.0),  # to the end
+        ([done], 0.0),
+    ]
+    for moments, seconds in ways:
+        waited = replace(replay, moments=moments, seconds=600.0)
+        assert answer_waits(waited) == PauseTotal(int(seconds > 0), seconds)
+        told = replace(session, replays=(waited,))
+        assert (length(seconds) in how_long_words(told)) == (seconds > 0)
+        assert told.to_json()["answer_waits"]["seconds"] == seconds
 
 
 def test_halts_and_interruptions_are_told_beside_the_pauses(
