@@ -190,3 +190,5 @@ class Outcome(NamedTuple):
     """Where it led the game, people's acts included; None if only the states can tell."""
     rounds_left: int = 0
     """How many rounds were still to come when the action ended the game."""
+    cut_short: bool = False
+    """Whether the robot stopped by itself, because the program was silent for a moment."""

@@ -46,6 +46,7 @@ from tangy_tui.world import World
 _LOG = logging.getLogger(__name__)
 
 NOT_DONE = "(it could not be carried out)"
+CUT_SHORT = "(Tangy stopped for a moment: this program was too slow; Tangy tries again)"
 MOST_STEPS = 1_000
 """Steps after which a game is considered endless: calling all 75 numbers takes about 120."""
 
@@ -353,6 +354,7 @@ class Facilitation:
         elif refused(behaviour, state, outcome, after):
             self._refused = target
         expected = activity.expected.get(state.situation, behaviour.name)
+        undone = CUT_SHORT if outcome.cut_short else NOT_DONE
         speech, image = activity.words_of(
             action, outcome, lambda person: self._names.get(person, person)
         )
@@ -364,7 +366,7 @@ class Facilitation:
             action,
             outcome,
             after,
-            speech or (NOTHING_SAID if outcome.completed else NOT_DONE),
+            speech or (NOTHING_SAID if outcome.completed else undone),
             image,
             outcome.completed and expected == behaviour.name,
         )

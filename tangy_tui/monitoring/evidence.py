@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import TypeAlias
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
 from tangy_profiles.health import ERROR, NEVER, OK, STALE, WARN, Fact
@@ -13,6 +15,9 @@ from tangy_tui.learning.effects import Mismatch
 STATES = {OK: "working", STALE: "no data", ERROR: "failed", WARN: "warning"}
 """The states of a device in words, for lists, evidence, drills and banners."""
 
+Label: TypeAlias = Callable[[str], str]
+"""Returns the words for a behaviour (see `Activity.behaviour_words`)."""
+
 
 def evidence_words(
     evidence: Evidence,
@@ -20,6 +25,7 @@ def evidence_words(
     robot: Robot,
     conditions: Iterable[Condition] = (),
     looks: FusedLook | None = None,
+    label: Label = str,
 ) -> str:
     """Format evidence as one line: measurements, expectations and observations.
 
@@ -29,6 +35,7 @@ def evidence_words(
         robot: its profile.
         conditions: the matching conditions, for the limits of measurements.
         looks: how many looks the mismatches rest on, and how often one is wrong.
+        label: returns the words for a behaviour.
     """
     limits = {condition.key: condition.limit for condition in conditions}
     parts: list[str] = []
@@ -51,7 +58,7 @@ def evidence_words(
             measure = device.facts.get(fact)
             measured = measure.says if measure is not None else fact.replace("_", " ")
             parts.append(f"{device.label}: {measured}: {written(value)}{limit}")
-    told = [*parts, *map(mismatch_words, mismatches)]
+    told = [*parts, *map(partial(mismatch_words, label=label), mismatches)]
     if looks is not None:
         often = max(2, round(1 / looks.rate))
         agree = f"{looks.agreeing} of {looks.taken} looks agree"
@@ -64,17 +71,17 @@ def _for_so_long(age: float) -> str:
     return " yet" if age >= NEVER else f" for {written(age)} s"
 
 
-def mismatch_words(mismatch: Mismatch) -> str:
+def mismatch_words(mismatch: Mismatch, label: Label = str) -> str:
     """Describe a mismatch in words, as a witness would."""
     words = _MISMATCHES.get((mismatch.variable, mismatch.seen))
     if words is None and mismatch.variable == "robot's place":
         there = _PLACES.get(mismatch.seen, mismatch.seen)
         wanted = " or ".join(_PLACES.get(place, place) for place in mismatch.expected)
-        words = f"Tangy is {there}" + (f", and should be {wanted}" if wanted else "")
+        words = f"it is {there}" + (f", and should be {wanted}" if wanted else "")
     if words is None:
         words = f"{mismatch.variable}: {mismatch.seen}"
     never = "" if mismatch.expected else " (no demonstration shows what to expect here)"
-    return f"after {mismatch.behaviour!r}, {words}{never}"
+    return f"Tangy was to {label(mismatch.behaviour)}, but {words}{never}"
 
 
 _PLACES = {"front": "at the front"}
@@ -90,8 +97,8 @@ _MISMATCHES = {
     ("request", "open with nothing left"): (
         "the request for help is still open, with nothing left to do"
     ),
-    ("what was asked about", "unchanged"): "what it was about has not changed",
-    ("what was asked about", "settled"): "what it was about was settled, unexpectedly",
+    ("what was asked about", "unchanged"): "it still sees the same as before",
+    ("what was asked about", "settled"): "this was settled, and should not have been",
     ("card", "lost from view"): "what Tangy was looking at went out of its sight",
     ("card", "kept in view"): "Tangy still sees what should be out of its sight",
     ("others' requests", "fewer"): "somebody else who asked for help asks no more",

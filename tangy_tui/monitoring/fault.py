@@ -56,6 +56,8 @@ class Fault:
     moves: list[RecoveryEvent] = field(default_factory=list)
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
+    real_time: bool = False
+    """Whether the seconds of the game are seconds of the day."""
     status: FaultStatus = OPEN
     """Whether it is open, borne or over."""
 

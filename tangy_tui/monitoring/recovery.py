@@ -16,6 +16,7 @@ from uuid import uuid4
 
 from tangy_profiles.faults import LEAVE_TO_STAFF, URGENCY, FaultRule, Remedy
 from tangy_profiles.game_records import CallMade, FaultMove, MoveKind, named
+from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.health import STALE
 from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState
@@ -68,8 +69,6 @@ class Recovery:
         """All faults, in the order of diagnosis."""
         self.halted: Fault | None = None
         """The fault that halts the robot."""
-        self.seconds = 0.0
-        """The time in the current game, in s."""
         self.on_halt: Callable[[Fault], None] = lambda fault: None
         """Called with the fault that halts the robot."""
         self.on_release: Callable[[], None] = lambda: None
@@ -87,16 +86,26 @@ class Recovery:
         """Reset for a game; `seconds` is the time in the game (s)."""
         self.faults = []
         self.halted = None
-        self.seconds = seconds
+        self._passed = seconds
         self._there: list[Fault] = []  # those that are not over
         self._rules: dict[str, FaultRule] = {}
         self._rung: Counter[str] = Counter()
         self._tried: Counter[str] = Counter()
         self._times: Counter[tuple[str, str | None, str]] = Counter()
 
+    @property
+    def seconds(self) -> float:
+        """The time in the current game, in s; at least the time played."""
+        return max(self._passed, self._game.log.seconds)
+
+    @seconds.setter
+    def seconds(self, seconds: float) -> None:
+        """Set the time in s."""
+        self._passed = seconds
+
     def pass_time(self, seconds: float) -> None:
         """Advance the time by some s, at least to the time played."""
-        self.seconds = max(self.seconds + seconds, self._game.log.seconds)
+        self.seconds = self._passed + seconds
 
     @property
     def there(self) -> list[Fault]:
@@ -132,7 +141,8 @@ class Recovery:
         conditions = rule.matched(diagnosis.evidence) or ()
         seen = {k: v for k, v in diagnosis.evidence.items() if k not in diagnosis.beside}
         looks = self._game.observation.fused if diagnosis.mismatches else None
-        why = evidence_words(seen, diagnosis.mismatches, self._robot, conditions, looks)
+        label = self._game.world.activity.behaviour_words
+        why = evidence_words(seen, diagnosis.mismatches, self._robot, conditions, looks, label)
         fault = Fault(
             id=uuid4().hex[:12],
             game=self._game.game,
@@ -149,6 +159,7 @@ class Recovery:
             evidence=diagnosis.evidence,
             mismatches=diagnosis.mismatches,
             at=self._store.now().isoformat(),
+            real_time=self._game.world.played_in != SIMULATED,
         )
         self._times[fault.code, fault.person, fault.behaviour] += 1
         times = self._times[fault.code, fault.person, fault.behaviour]

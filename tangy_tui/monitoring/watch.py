@@ -22,6 +22,9 @@ from tangy_tui.monitoring.secondary_symptoms import SecondarySymptoms
 NOT_SHOWN: Evidence = {"situation.shown": False}
 """The evidence that a situation was never demonstrated."""
 
+MOST_CUT_SHORT = 5
+"""Behaviours in a row that the program's own silence may cut short before that is a fault."""
+
 HIDING = frozenset(("mismatch.card", "mismatch.what was asked about"))
 """Symptoms explained by a device fault that hides cards: an unseen response is no refusal then."""
 
@@ -41,6 +44,7 @@ class FaultWatch:
         self._detector = detector
         self._recovery = recovery
         self._seen: Evidence | None = None
+        self._cut_short = 0
         self._secondary = SecondarySymptoms(book, detector.devices)
         recovery.hides_cards = self._hides_cards
 
@@ -48,6 +52,7 @@ class FaultWatch:
         """Reset for a new game."""
         self.acted.clear()
         self._seen = None
+        self._cut_short = 0
         self._secondary.begin()
         self._detector.begin()
 
@@ -80,14 +85,15 @@ class FaultWatch:
     def after(self, events: Sequence[GameEvent], *, ordered: bool = False) -> list[Event]:
         """Check a behaviour against its expected effects; end a finished game.
 
-        If it was `ordered` by staff (a STOP, or staff took over), its effects are neither a fault
-        nor a refusal.
+        If it was `ordered` by staff (a STOP, or staff took over), or the program's own silence cut
+        it short, its effects are neither a fault nor a refusal.
         """
         told: list[Event] = []
         for event in events:
             told.append(event)
             if isinstance(event, Acted):
-                told += self._take_in(event) if ordered else self._compare(event)
+                no_fault = self._was_cut_short(event) or ordered
+                told += self._take_in(event) if no_fault else self._compare(event)
             elif isinstance(event, Unsure) and not event.fault:
                 told += self._take(diagnose(self.book, NOT_SHOWN), None)
                 for fault in self._recovery.waiting[:1]:
@@ -97,6 +103,11 @@ class FaultWatch:
         if not self._game.over and self._game.world.over:
             told += self._recovery.leave_open() + list(self._game.finish())
         return told
+
+    def _was_cut_short(self, acted: Acted) -> bool:
+        """Return whether the program's own silence cut a behaviour short, and it is tried again."""
+        self._cut_short = self._cut_short + 1 if acted.outcome.cut_short else 0
+        return 0 < self._cut_short <= MOST_CUT_SHORT
 
     def refused(self, fault: Fault) -> list[Event]:
         """Check, after a request, whether a person has reached the limit of requests."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.health import ERROR, STALE, Fact, Health
 from tangy_tui.monitoring.detection import LATE
 from tangy_tui.monitoring.diagnosis import narrows
-from tangy_tui.monitoring.evidence import STATES, mismatch_words, written
+from tangy_tui.monitoring.evidence import STATES, Label, mismatch_words, written
 from tangy_tui.monitoring.fault import (
     BORNE,
     OPEN,
@@ -22,7 +23,7 @@ from tangy_tui.monitoring.fault import (
 )
 from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.numbers import listed, ordinal
-from tangy_tui.text.times import clock
+from tangy_tui.text.times import clock, time_of_day
 
 if TYPE_CHECKING:
     from tangy_profiles.game_records import MoveKind
@@ -208,8 +209,10 @@ class EvidenceLine(NamedTuple):
     note: str = ""
 
 
-def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLine]:
-    """Pair observations with their expectations."""
+def evidence_of(
+    fault: Fault, book: FaultBook, robot: Robot, label: Label = str
+) -> list[EvidenceLine]:
+    """Pair observations with their expectations; `label` returns the words for a behaviour."""
     rule = book.rule(fault.code)
     pieces: list[EvidenceLine] = []
     for key, value in fault.evidence.items():
@@ -232,7 +235,7 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLin
             observed = _observed(fact, value)
             pieces.append(EvidenceLine(f"{what}: {observed}", f"expected: {expected}"))
     for one in fault.mismatches:
-        words = mismatch_words(one)
+        words = mismatch_words(one, label)
         wanted = listed(one.expected, "or") or "nothing known"
         note = f"{one.variable}: {one.seen}; expected: {wanted}"
         pieces.append(EvidenceLine(f"{words[:1].upper()}{words[1:]}", note))
@@ -372,10 +375,26 @@ def _said(move: RecoveryEvent) -> list[str]:
     return [f"   Tangy says: {move.speech}"] if move.speech else []
 
 
+def fault_time(fault: Fault, seconds: float, *, short: bool = False) -> str:
+    """Format when something happened about a fault: the time of day, or in the game if simulated.
+
+    Args:
+        fault: the fault.
+        seconds: the time in the game, in s.
+        short: without seconds of the time of day.
+    """
+    if not fault.real_time or not fault.at:
+        return clock(seconds)
+    at = datetime.fromisoformat(fault.at) + timedelta(seconds=seconds - fault.seconds)
+    return time_of_day(at.isoformat())[: 5 if short else 8]
+
+
 def list_lines(faults: list[Fault]) -> list[str]:
     """List faults with their recoveries."""
     lines: list[str] = []
     for number, fault in enumerate(faults, 1):
         lines.append(f"{number}. step {fault.step}: {fault.name} ({fault.status})")
-        lines += [f"   {clock(move.seconds)}  {move_words(move)}" for move in fault.moves]
+        lines += [
+            f"   {fault_time(fault, move.seconds)}  {move_words(move)}" for move in fault.moves
+        ]
     return lines or ["No faults in this game."]

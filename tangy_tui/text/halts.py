@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.contacts import EXPERT
 from tangy_tui.text.calls import call_words, expert_words
-from tangy_tui.text.faults import kind_words, mark_of, move_words
-from tangy_tui.text.times import clock
+from tangy_tui.text.faults import fault_time, kind_words, mark_of, move_words
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import Fault, RecoveryEvent
@@ -46,9 +45,9 @@ def halted_words(fault: Fault) -> str:
     return f"{where} Tangy has stopped, and nothing moves until you clear this."
 
 
-def last_move_words(move: RecoveryEvent) -> str:
+def last_move_words(fault: Fault, move: RecoveryEvent) -> str:
     """Name the last recovery event of a fault."""
-    return f"Last, at {clock(move.seconds)}: {move_words(move)}."
+    return f"Last, at {fault_time(fault, move.seconds)}: {move_words(move)}."
 
 
 def wait_words(doing: str) -> str:

@@ -238,7 +238,9 @@ class FaultConsole:
         fault = next((f for f in self.supervision.faults if f.id == id), None)
         if fault is None:
             return None
-        return FaultDialog(fault, self.supervision.book, self.supervision.robot)
+        game = self.supervision
+        label = game.world.activity.behaviour_words
+        return FaultDialog(fault, game.book, game.robot, label)
 
     # ---------------------------------------------------------------------------- halting
 

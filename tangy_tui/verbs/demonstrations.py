@@ -311,7 +311,10 @@ def accepted(
         if take_back is not None:
             take_it_back(workspace.store, name, take_back)
         there = read_accepted(workspace.store, name)
-        words = ["; ".join(map(mismatch_words, one.mismatches)) for one in there]
+        label = workspace.activity.behaviour_words
+        words = [
+            "; ".join(mismatch_words(found, label) for found in one.mismatches) for one in there
+        ]
         if as_json:
             print_json(
                 [

@@ -167,7 +167,7 @@ def test_a_mismatch_names_variable_expected_and_observed_value(supervise: Superv
     (mismatch, *_) = game.faults[0].mismatches
     assert mismatch.variable == "robot's place"
     assert (mismatch.expected, mismatch.seen) == (("with the person who asked",), "front")
-    assert "Tangy is at the front, and should be with the person who asked" in game.faults[0].why
+    assert "it is at the front, and should be with the person who asked" in game.faults[0].why
 
 
 def test_an_injected_fault_is_noticed_at_the_next_look(supervise: Supervise) -> None:

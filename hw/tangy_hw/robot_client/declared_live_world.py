@@ -16,6 +16,7 @@ from tangy_hw.robot_client.chest_picture import chest_picture, standing_picture
 from tangy_hw.robot_client.declared_tracker import DeclaredTracker
 from tangy_hw.robot_client.fact_observation import FactObservation
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_process.stop_latch import ALONE
 from tangy_profiles.behaviour import Action
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame, Execution
@@ -235,9 +236,9 @@ class DeclaredLiveWorld(LiveWorld):
             self._let_people_act(name if done.completed else "", whom)
         seconds = max(0.0, self.link.time - began)
         unclear, self._not_clear = tuple(self._not_clear), []
-        led = self._progress.end(game)
-        left = game.rounds_left if self.over else 0
-        return Outcome(done.completed, seconds, (), response, speech, image, unclear, led, left)
+        led, left = self._progress.end(game), game.rounds_left if self.over else 0
+        told = (unclear, led, left, self.broken == ALONE)
+        return Outcome(done.completed, seconds, (), response, speech, image, *told)
 
     def _perform(self, action: Action, whom: str | None) -> tuple[str, str]:
         """Speak, show, gesture and drive; return speech and picture text.

@@ -24,7 +24,7 @@ from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
 from tangy_hw.robot_client.staff_card_reports import StaffCardReports
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
-from tangy_hw.robot_process.stop_latch import Preempted
+from tangy_hw.robot_process.stop_latch import ALONE, Preempted
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.effects import DRIVES
@@ -195,7 +195,8 @@ class LiveWorld(LivePlan):
         self.commands.settle()
         if not self.broken and not self.over:
             self.requests.look_twice(self.tracker)
-        return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
+        seconds, cut = max(0.0, self.link.time - began), self.broken == ALONE
+        return Outcome(succeeded, seconds, numbers, response, cut_short=cut)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
         """Return the numbers of an action; None if there is nothing to ask."""

@@ -41,7 +41,7 @@ from tangy_hw.robot_process.protocol import (
 )
 from tangy_hw.robot_process.requests import LastingRequest, immediate_request, lasting_request
 from tangy_hw.robot_process.startup import switched_on
-from tangy_hw.robot_process.stop_latch import STAFF, Preempted
+from tangy_hw.robot_process.stop_latch import ALONE, STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import device_state
@@ -314,7 +314,7 @@ class RobotProcess:
     def _why_alone(self) -> str:
         """Return why the program counts as absent, "" if it does not."""
         silent = time.monotonic() - self._heard > self._patience
-        return "the program says nothing" if silent else ""
+        return ALONE if silent else ""
 
     async def beat(self) -> None:
         """Send heartbeats."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from tangy_hw.device_protocols import DeviceError
 
+ALONE = "the program says nothing"
+"""Why the robot stops if the program falls silent; it goes on once the program is back."""
+
 STAFF, FAULT = "staff", "fault"
 """Sources of a stop: a person at a screen, or a diagnosed fault."""
 

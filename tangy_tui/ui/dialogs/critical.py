@@ -23,12 +23,12 @@ from tangy_tui.text.fault_views import ALSO_WRONG, HOW_KNOWN
 from tangy_tui.text.faults import (
     ages_of,
     evidence_of,
+    fault_time,
     known_now,
     mark_of,
     still_there_words,
 )
 from tangy_tui.text.keys import with_keys
-from tangy_tui.text.times import clock
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -332,20 +332,21 @@ class CriticalDialog(Dialog[None]):
         if others:
             lines += paragraph(clean(f"{ALSO_WRONG}: {', '.join(f.name for f in others)}."), width)
         if len(fault.moves) > 1:
-            lines += paragraph(clean(halts.last_move_words(fault.moves[-1])), width, "dim")
+            lines += paragraph(clean(halts.last_move_words(fault, fault.moves[-1])), width, "dim")
         lines += heading(halts.WHOM_TO_CALL)
         lines += advice_lines(fault.advice, width)
         lines += paragraph(clean(advised_call(supervision)), width)
         if staff := staff_words(supervision):
             lines += paragraph(clean(staff), width)
-        pieces = evidence_of(fault, book, robot)
+        label = supervision.world.activity.behaviour_words
+        pieces = evidence_of(fault, book, robot, label)
         pieces += ages_of(fault, book, robot, supervision.world.health())
         if pieces:
             lines += heading(HOW_KNOWN) + evidence_lines(pieces, width)
-        lines += heading(halts.SO_FAR) + moves_so_far(fault.moves, width)
+        lines += heading(halts.SO_FAR) + moves_so_far(fault, width)
         if others:
             lines += heading(ALSO_WRONG)
         for other in others:
-            words = f"{mark_of(other)} {clock(other.seconds)} {other.name}"
+            words = f"{mark_of(other)} {fault_time(other, other.seconds)} {other.name}"
             lines += paragraph(clean(words), width)
         return lines

@@ -12,17 +12,18 @@ from textual.content import Content
 
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.robot import Robot
-from tangy_tui.monitoring.fault import Fault, RecoveryEvent
+from tangy_tui.monitoring.evidence import Label
+from tangy_tui.monitoring.fault import Fault
 from tangy_tui.text.fault_views import DONE_WHEN, HOW_KNOWN, WHAT_TO_DO
 from tangy_tui.text.faults import (
     EvidenceLine,
     evidence_of,
+    fault_time,
     kind_words,
     mark_of,
     move_words,
     state_words,
 )
-from tangy_tui.text.times import clock
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
@@ -44,8 +45,10 @@ class FaultDialog(Dialog[None]):
         "Tangy and people did about it and when, and what you can do. Up and down scroll."
     )
 
-    def __init__(self, fault: Fault, book: FaultBook, robot: Robot) -> None:
+    def __init__(self, fault: Fault, book: FaultBook, robot: Robot, label: Label = str) -> None:
+        """Show a fault; `label` returns the words for a behaviour."""
         super().__init__(None)
+        self._label = label
         self._fault = fault
         self._book = book
         self._robot = robot
@@ -76,33 +79,36 @@ class FaultDialog(Dialog[None]):
         kind = f"{kind_words(fault)}, after step {fault.step}; {state_words(fault)}"
         lines += paragraph(kind, width, "dim")
         lines += heading(DONE_WHEN) + timeline(fault, width)
-        if pieces := evidence_of(fault, self._book, self._robot):
+        if pieces := evidence_of(fault, self._book, self._robot, self._label):
             lines += heading(HOW_KNOWN) + evidence_lines(pieces, width)
         return lines + heading(WHAT_TO_DO) + advice_lines(fault.advice, width)
 
 
 def timeline(fault: Fault, width: int) -> list[PageLine]:
     """Format each move with its time in the game, and its speech."""
-    lines = _entry(fault.seconds, "noticed", width)
+    lines = _entry(fault_time(fault, fault.seconds), "noticed", width)
     for move in fault.moves:
-        lines += _entry(move.seconds, move_words(move), width)
+        lines += _entry(fault_time(fault, move.seconds), move_words(move), width)
         lines += _indented(f"“{clean(move.speech)}”", width, "person") if move.speech else []
     return lines
 
 
-def moves_so_far(moves: Sequence[RecoveryEvent], width: int) -> list[PageLine]:
-    """Format recovery events with their times, without speech."""
-    return [line for move in moves for line in _entry(move.seconds, move_words(move), width)]
+def moves_so_far(fault: Fault, width: int) -> list[PageLine]:
+    """Format a fault's recovery events with their times, without speech."""
+    lines: list[PageLine] = []
+    for move in fault.moves:
+        lines += _entry(fault_time(fault, move.seconds), move_words(move), width)
+    return lines
 
 
-def _entry(seconds: float, words: str, width: int) -> list[PageLine]:
-    first, *more = wrap(clean(words), max(10, width - 8))
-    head = PageLine(((f"{clock(seconds):>6}  ", "dim"), (first, "text")))
-    return [head, *(PageLine(((f"{'':8}{text}", "text"),)) for text in more)]
+def _entry(time: str, words: str, width: int) -> list[PageLine]:
+    first, *more = wrap(clean(words), max(10, width - 10))
+    head = PageLine(((f"{time:>8}  ", "dim"), (first, "text")))
+    return [head, *(PageLine(((f"{'':10}{text}", "text"),)) for text in more)]
 
 
 def _indented(words: str, width: int, ink: str) -> list[PageLine]:
-    return [PageLine(((f"{'':8}{text}", ink),)) for text in wrap(words, max(10, width - 8))]
+    return [PageLine(((f"{'':10}{text}", ink),)) for text in wrap(words, max(10, width - 10))]
 
 
 def evidence_lines(pieces: Sequence[EvidenceLine], width: int) -> list[PageLine]:

@@ -12,13 +12,13 @@ from tangy_tui.monitoring.fault import OPEN, Fault
 from tangy_tui.text.fault_views import LIST_HELP, NO_FAULTS, NONE_FOUND
 from tangy_tui.text.faults import (
     Name,
+    fault_time,
     last_words,
     mark_of,
     searched,
     short_state,
     state_words,
 )
-from tangy_tui.text.times import clock
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
@@ -128,7 +128,7 @@ def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[Cho
 def _row(fault: Fault, columns: Columns) -> Row:
     there = fault.status == OPEN
     ink = "bad" if fault.critical and there else "warn" if there else "text"
-    time = f"{clock(fault.seconds):>6} " if columns.time else ""
+    time = f"{fault_time(fault, fault.seconds, short=True):>6} " if columns.time else ""
     step = f"{fault.step:>4} " if columns.step else ""
     state = state_words(fault) if columns.state == STATE else short_state(fault)
     last = shorten(f"  {clean(last_words(fault))}", columns.last) if columns.last else ""
