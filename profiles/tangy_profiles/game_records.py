@@ -255,7 +255,10 @@ MoveKind = Literal[
 
 @dataclass(frozen=True, slots=True)
 class RecoveryEvent:
-    """One step of a recovery: kind, attempt number, person, speech, time (s)."""
+    """One step of a recovery: kind, attempt number, person, speech, time (s).
+
+    `answer` is the behaviour that a teacher said, for the person `target` ("": for nobody).
+    """
 
     kind: MoveKind
     seconds: float
@@ -265,6 +268,8 @@ class RecoveryEvent:
     speech: Sparse[str] = ""
     image: Sparse[str] = ""
     remedy: Sparse[str] = ""
+    answer: Sparse[str] = ""
+    target: Sparse[str] = ""
 
     def called(self, name: str) -> RecoveryEvent:
         """Return the event with the person's name in its slots."""

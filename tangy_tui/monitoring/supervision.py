@@ -21,7 +21,7 @@ from tangy_profiles.robot import Robot
 from tangy_profiles.staff_records import StaffAction, StaffActionKind
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import MOST_STEPS, Facilitation
-from tangy_tui.interaction.game_events import DoneOnce, Taught, Unsure
+from tangy_tui.interaction.game_events import Taught, Unsure
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
@@ -29,11 +29,7 @@ from tangy_tui.learning.verification import Verifier
 from tangy_tui.monitoring import accepted
 from tangy_tui.monitoring.calls import FIRST_SECONDS, Calls
 from tangy_tui.monitoring.detection import Detector
-from tangy_tui.monitoring.fault import (
-    OPEN,
-    Fault,
-    RecoveryEvent,
-)
+from tangy_tui.monitoring.fault import OPEN, Fault, RecoveryEvent
 from tangy_tui.monitoring.recovery import Event as Event
 from tangy_tui.monitoring.recovery import Recovery
 from tangy_tui.monitoring.watch import FaultWatch
@@ -314,19 +310,21 @@ class Supervision:
         if question is None:
             return told
         stops, chosen = self._stops, question.decision
-        events = self.game.answer(behaviour, target, teacher)
-        self._idle = 0
         wanted = bool(question.fault) and self._asked_about(question) is None
         otherwise = wanted and behaviour.name != chosen.behaviour  # staff's choice, unasked
+        said = RecoveryEvent(
+            "taught", self.seconds, by=teacher, answer=behaviour.name, target=target or ""
+        )
+        told += self._answered(question, said)  # at once: the behaviour may take a while
+        events = self.game.answer(behaviour, target, teacher)
+        self._idle = 0
         taught = any(isinstance(event, Taught) for event in events)
-        if taught or any(isinstance(event, DoneOnce) for event in events):
-            told += self._answered(question, RecoveryEvent("taught", self.seconds, by=teacher))
         ordered = otherwise or self._stops != stops
         # compare with the effects expected before the answer was learnt
         found = self.watch.after(events, ordered=ordered)
         if taught:
             self.detector.effects = self.effects_of(self.policy)
-        return found + told + self._end_if_hopeless()
+        return told + found + self._end_if_hopeless()
 
     def accept(self, by: str) -> list[Event]:
         """Accept an observed effect: it is expected from now on."""

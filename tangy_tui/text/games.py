@@ -186,6 +186,7 @@ TRIES_AGAIN = "{pause} tries again; esc leads home."
 NONE_YET = "No game was played yet: begin with `tangy play`."
 NOTHING_DECIDED = "Nothing has been decided yet."
 NO_UNSEEN_FAULT = "No fault that nobody has seen."
+ANSWER_FIRST = "Tangy asks about this fault: answer its question."
 
 
 def halted_words(reason: str) -> str:

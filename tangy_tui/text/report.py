@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime, timedelta
 from statistics import median_low
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.monitoring.attention import Attention, Call, attention, calls_in, visiting
-from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.done import Done
+from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
@@ -259,26 +261,45 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
     rows: list[tuple[str, str, str]] = []
     last = ("", "")  # who did the last row, and whether it set the pace
     for replay in replays:
+        answered = ("", "")  # the answer that the next behaviour carries out, and for whom
         for moment in replay.moments:
-            if (told := _staff_words(moment, name)) is not None:
+            what, at = moment.what, moment.at
+            told = _staff_words(moment, replay.activity, name)
+            if isinstance(what, Moved) and what.move.answer:
+                answered = (what.move.answer, what.move.target)
+            elif isinstance(what, Done) and what.teacher:
+                if answered != (what.behaviour, what.target or ""):  # after staff took over
+                    begun = datetime.fromisoformat(at) - timedelta(seconds=what.over - what.begun)
+                    at = begun.isoformat()
+                    words = _answer_words(replay.activity, what.behaviour, what.target or "", name)
+                    told = what.teacher, words
+                answered = ("", "")
+            if told is not None:
                 who, words = told
-                paced = isinstance(moment.what, Noted) and moment.what.did == "pace"
+                paced = isinstance(what, Noted) and what.did == "pace"
                 if paced and last == (who, "pace"):
                     rows.pop()  # keys change it step by step: the last one counts
                 last = (who, "pace" if paced else "")
-                rows.append((time_of_day(moment.at), who, words))
+                rows.append((time_of_day(at), who, words))
     return rows
 
 
-def _staff_words(moment: Moment, name: Name) -> tuple[str, str] | None:
+def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple[str, str] | None:
     what = moment.what
     if isinstance(what, Noted):
         return (what.by, did_words(what, name)) if by_staff(what) else None
-    move = getattr(what, "move", None)
-    fault: Fault | None = getattr(what, "fault", None)
-    if move is None or fault is None or not move.by or move.kind not in STAFF_MOVES:
+    if not isinstance(what, Moved) or not what.move.by or what.move.kind not in STAFF_MOVES:
         return None
+    move, fault = what.move, what.fault
+    if move.answer:
+        return move.by, _answer_words(activity, move.answer, move.target, name)
     return move.by, f"{STAFF_MOVES[move.kind]}: {fault.name}"
+
+
+def _answer_words(activity: Activity | None, behaviour: str, target: str, name: Name) -> str:
+    """Tell which behaviour staff chose, and for whom."""
+    does = behaviour if activity is None else activity.behaviour_words(behaviour)
+    return f"told Tangy what to do: {does}{f' ({name(target)})' if target else ''}"
 
 
 def fault_outcome(fault: Fault, status: str) -> str:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import Awaitable, Callable
-from dataclasses import replace
 from typing import Any
 
 from textual.screen import Screen
@@ -24,7 +23,6 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.fault import (
-    OPEN,
     OVER,
     Diagnosed,
     Fault,
@@ -48,6 +46,7 @@ from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
 from tangy_tui.ui.keys import keymap_of
+from tangy_tui.ui.staged_recovery import StagedRecovery, takes_time
 from tangy_tui.ui.widgets.command_input import CommandInput
 from tangy_tui.ui.widgets.fault_banner import ESC_SEEN, SEEN, FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
@@ -63,9 +62,6 @@ Tell = Callable[[list[Event], bool], None]
 Work = Callable[[], list[Event]]
 Beside = Callable[[Work], Awaitable[list[Event]]]
 """Runs work in the background while the screen stays responsive, and returns its events."""
-
-_TAKES_TIME = ("asked", "remedied")
-"""The moves whose outcome takes time to become visible."""
 
 
 class FaultConsole:
@@ -104,7 +100,8 @@ class FaultConsole:
         self._free.set()
         self._dialog: CriticalDialog | None = None
         self._status = ("", "")
-        self._during: tuple[Fault, int] | None = None
+        self.staged = StagedRecovery(control.supervision)
+        """The recovery whose outcome is shown later."""
         self._put_away: set[tuple[str, int]] = set()
         self._asked_for: dict[str, int] = {}
         self._game = 0
@@ -129,9 +126,9 @@ class FaultConsole:
             self._gave_up = True
             self._failed(str(error))
             return
-        if events is None:
-            return
-        if self._dialog is not None:
+        if events is None:  # a behaviour is carried out: an answer may have ended a fault
+            events = []
+        elif self._dialog is not None:
             self._dialog.look()
         if events or self.supervision.status != self._status:
             self._tell(events, False)
@@ -153,8 +150,8 @@ class FaultConsole:
         if word == "ASKS" and question is not None:
             named = (fault.name for fault in supervision.faults if fault.id == question.fault)
             return status_words((word, next(named, "")))
-        if self._during is not None and halted is None:
-            return status_words(("WARN", self._during[0].name))
+        if (during := self.staged.fault) is not None:
+            return status_words(("WARN", during.name))
         return "OK" if halted is None and supervision.over else status_words((word, cause))
 
     @property
@@ -181,12 +178,12 @@ class FaultConsole:
                 said=clean(said_words(fault)),
                 more=len(told) - 1,
                 critical=fault.critical,
-                key="" if supervision.over else with_keys(ESC_SEEN if typing else SEEN, keys),
+                key=with_keys(ESC_SEEN if typing else SEEN, keys) if self.shows(fault) else "",
             )
         else:
             banner.show(())
         faults = screen.query_one(FaultList)
-        faults.fill([self._as_shown(fault) for fault in supervision.faults])
+        faults.fill([*map(self.staged.as_shown, supervision.faults)])
         faults.set_class(any(not fault.asks_only for fault in supervision.faults), "-there")
         if self._dialog is not None:
             self._dialog.show(screen.query_one(StatusLine).status)
@@ -194,31 +191,14 @@ class FaultConsole:
     @property
     def told(self) -> list[Fault]:
         """The faults for the banner, the most urgent first, as they are shown."""
-        supervision, during = self.supervision, self._during
+        supervision, during = self.supervision, self.staged.fault
         if supervision.halted is not None and supervision.over:
             return [supervision.halted]
         told = [] if supervision.over else told_in_banner(supervision)
-        if during is not None and supervision.halted is None:
-            told = [during[0], *(fault for fault in told if fault is not during[0])]
-        shown = (self._as_shown(fault) for fault in told)
+        if during is not None:
+            told = [during, *(fault for fault in told if fault is not during)]
+        shown = map(self.staged.as_shown, told)
         return [fault for fault in shown if _told_so_far(fault) not in self._put_away]
-
-    def _as_shown(self, fault: Fault) -> Fault:
-        """Return a fault without the outcome of its last move, if that is to be shown later."""
-        if self._during is None or self._during[0] is not fault or self.supervision.halted:
-            return fault
-        return replace(fault, moves=fault.moves[: self._during[1]], status=OPEN)
-
-    def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
-        """Split off the outcome of a recovery, which is shown later than its start."""
-        for n, event in enumerate(events):
-            if isinstance(event, Moved) and event.move.kind in _TAKES_TIME and events[n + 1 :]:
-                if self.supervision.halted is not None or self.supervision.question is not None:
-                    break
-                count = next(k for k, m in enumerate(event.fault.moves, 1) if m is event.move)
-                self._during = (event.fault, count)
-                return events[: n + 1], events[n + 1 :]
-        return events, []
 
     def urgent(self, events: list[Event]) -> bool:
         """Return whether a fault needs action at once."""
@@ -227,11 +207,7 @@ class FaultConsole:
         if self.supervision.halted is not None:
             return found or bool(moved)
         due = found or "went on" in moved  # people's actions do not end the wait for a retry
-        return due and bool(self.supervision.waiting) and moved.isdisjoint(_TAKES_TIME)
-
-    def done(self) -> None:
-        """Allow the outcome of the recovery to be shown."""
-        self._during = None
+        return due and bool(self.supervision.waiting) and not takes_time(moved)
 
     def dialog(self, id: str) -> FaultDialog | None:
         """Return the dialog with all about a fault; None if there is no such fault."""
@@ -261,15 +237,26 @@ class FaultConsole:
         self._dialog = None
         self._free.set()
 
-    def see(self) -> bool:
-        """Acknowledge the fault in the banner and hide it; False: there is none."""
-        told = self.told
-        if not told or self.supervision.over:
+    @property
+    def unseen(self) -> Fault | None:
+        """The fault in the banner that staff can say they have seen; not one Tangy asks about."""
+        told, asked = self.told, self.asked_about
+        if not told or self.supervision.over or (asked is not None and asked.id == told[0].id):
+            return None
+        return told[0]
+
+    def shows(self, fault: Fault) -> bool:
+        """Return whether a fault is still the one in the banner that staff can see."""
+        return self.unseen is not None and self.unseen.id == fault.id
+
+    def see(self, fault: Fault) -> bool:
+        """Acknowledge the fault in the banner and hide it; False: that is another one now."""
+        if not self.shows(fault):
             return False
-        fault = next(f for f in self.supervision.faults if f.id == told[0].id)
-        if fault.status != OVER:
-            self.acknowledge(fault)
-        self._put_away.add(_told_so_far(told[0]))
+        (known,) = (one for one in self.supervision.faults if one.id == fault.id)
+        self._put_away.add(_told_so_far(self.told[0]))
+        if known.status != OVER:
+            self.acknowledge(known)
         self.show()
         return True
 

@@ -11,11 +11,15 @@ import pytest
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import ALONE
-from tangy_profiles.game_records import FaultDiagnosed
+from tangy_profiles.game_records import FaultDiagnosed, FaultMove
+from tangy_tui.app.game_commands import TAKEN_OVER
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.replay import read_replays
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.watch import MOST_CUT_SHORT
+from tangy_tui.text.report import staff_rows
 from tests.hw.links import FakeLink
 
 PEOPLE = ("user1", "user2", "user3", "user4")
@@ -51,7 +55,7 @@ def live_game(workspace: Workspace, learnt: Policy) -> tuple[Supervision, LiveWo
         seed=1,
         names=workspace.names,
     )
-    game = workspace.supervision(learnt, 1, world=world)
+    game = workspace.supervision(learnt, 1, world=world, asks=True)
     game.begin()
     for _ in range(3):
         game.step()
@@ -132,3 +136,47 @@ def test_what_staff_do_about_a_fault_has_the_time_when_they_did_it(
     passed = timedelta(seconds=fault.moves[-1].seconds - fault.seconds)
     assert passed == timedelta(seconds=60)
     assert fault.real_time
+
+
+def test_an_answer_is_logged_and_ends_its_fault_before_it_is_carried_out(
+    workspace: Workspace, learnt: Policy
+) -> None:
+    game, _, link = live_game(workspace, learnt)
+    link.missed.add("user2")
+    while game.question is None:
+        game.step()
+    drive = workspace.activity.behaviours["navigate to user"]
+    link.missed.clear()
+    seen: list[tuple[str, str, str, str, str]] = []
+
+    def look(do: str, time: float) -> None:
+        if do == "go":
+            move = game.faults[0].moves[-1]
+            said = workspace.store.last(FaultMove)
+            assert said is not None and said.record.move == move
+            seen.append((move.kind, move.answer, move.target, move.by, game.status[0]))
+
+    link.meanwhile = look
+    game.answer(drive, "user2", "Nina")
+    assert seen == [("taught", drive.name, "user2", "Nina", "OK")]
+
+
+@pytest.mark.parametrize("over", [False, True], ids=["asked", "taken over"])
+def test_the_report_tells_what_staff_answered(
+    workspace: Workspace, learnt: Policy, over: bool
+) -> None:
+    game, _, link = live_game(workspace, learnt)
+    if over:
+        game.game.ask("", "", TAKEN_OVER)
+    else:
+        link.missed.add("user2")
+    while game.question is None:
+        game.step()
+    link.missed.clear()
+    drive = workspace.activity.behaviours["navigate to user"]
+    game.answer(drive, "user2", "Nina")
+    store, activity = workspace.store, workspace.activity
+    (replay,) = read_replays(store, read_games(store), {activity.name: activity}, {})
+    (row,) = staff_rows([replay], lambda person: f"<{person}>")
+    assert row[1] == "Nina"
+    assert drive.question in row[2] and "<user2>" in row[2]

@@ -39,6 +39,7 @@ class ConfirmDialog(Dialog[bool]):
         no: str = "no",
         clock: Clock | None = None,
         also: Callable[[], str] | None = None,
+        obsolete: Callable[[], bool] | None = None,
     ) -> None:
         """Create the dialog.
 
@@ -49,9 +50,11 @@ class ConfirmDialog(Dialog[bool]):
             no: the words for no.
             clock: the time in s, to drop keys that were typed ahead.
             also: returns a sentence about what happened since, "" if nothing did.
+            obsolete: returns whether there is nothing left to ask; the dialog then closes.
         """
         super().__init__(False)
         self._also, self._since = also, ""
+        self._obsolete = obsolete
         self._question = clean(question)
         self._detail = clean(detail)
         self._words = (clean(yes), clean(no))
@@ -80,6 +83,14 @@ class ConfirmDialog(Dialog[bool]):
         self._keys.watch(self, self._clock)
         if self._also is not None:
             self.set_interval(SINCE_SECONDS, self._tell_since)
+        if self._obsolete is not None:
+            self.set_interval(SINCE_SECONDS, self._close_if_obsolete)
+
+    def _close_if_obsolete(self) -> None:
+        """Close with no, if what it asks about is over."""
+        assert self._obsolete is not None  # noqa: S101 - else it is not called
+        if self._obsolete():
+            self.answer(False)
 
     def _tell_since(self) -> None:
         """Add what happened since the question was asked."""

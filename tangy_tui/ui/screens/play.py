@@ -272,7 +272,7 @@ class PlayScreen(PlayStaff):
             before = supervision.seconds
             events, rest = await self._beside(self.control.next), list[Event]()
             if not self.skipping and control.going:
-                events, rest = self._faults.parts(events)
+                events, rest = self._faults.staged.parts(events)
             self._tell(events)
             if control.proposal is not None:
                 await self._propose(control.proposal)
@@ -290,7 +290,7 @@ class PlayScreen(PlayStaff):
             else:
                 await self._nudged(IDLE_SECONDS)
             if rest:
-                self._faults.done()
+                self._faults.staged.done()
                 self._tell(rest)
         if self.skipping:
             self.action_panel("posteriors")  # as the question promised

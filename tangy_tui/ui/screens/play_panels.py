@@ -16,8 +16,9 @@ from tangy_profiles.present_moment import as_present
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.text.games import NO_UNSEEN_FAULT, NOTHING_DECIDED, SEEN
+from tangy_tui.text.games import ANSWER_FIRST, NO_UNSEEN_FAULT, NOTHING_DECIDED, SEEN
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
@@ -211,27 +212,39 @@ class PlayPanels(TangyScreen[Tally]):
 
     def action_acknowledge(self) -> None:
         """Acknowledge the fault in the banner, after confirmation."""
-        if told := self._faults.told:
-            self._sure(SEEN, told[0].name, self._acknowledge)
+        if (fault := self._faults.unseen) is not None:
+            self._sure(
+                SEEN,
+                fault.name,
+                lambda: self._acknowledge(fault),
+                lambda: not self._faults.shows(fault),
+            )
         else:
-            self._tell_now(NO_UNSEEN_FAULT, "dim")
+            asks = self._faults.asked_about is not None
+            self._tell_now(ANSWER_FIRST if asks else NO_UNSEEN_FAULT, "dim")
 
     def _told(self, text: str) -> str:
         """Insert the keys of actions into a sentence."""
         return with_keys(text, keymap_of(self.app))
 
-    def _sure(self, question: str, detail: str, then: Callable[[], None]) -> None:
-        """Run an action that cannot be undone, after confirmation."""
+    def _sure(
+        self,
+        question: str,
+        detail: str,
+        then: Callable[[], None],
+        obsolete: Callable[[], bool] | None = None,
+    ) -> None:
+        """Run an action that cannot be undone, after confirmation, unless that is `obsolete`."""
 
         def answered(sure: bool | None) -> None:
             if sure:
                 then()
 
-        self.app.push_screen(ConfirmDialog(question, detail), answered)
+        self.app.push_screen(ConfirmDialog(question, detail, obsolete=obsolete), answered)
 
-    def _acknowledge(self) -> None:
+    def _acknowledge(self, fault: Fault) -> None:
         try:
-            if not self._faults.see():
+            if not self._faults.see(fault):
                 self._tell_now(NO_UNSEEN_FAULT, "dim")
         except TangyError as error:
             self._fail(str(error))
