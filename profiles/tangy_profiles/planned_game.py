@@ -115,6 +115,11 @@ class PlannedGame:
         """The numbers that count as called."""
         raise NotImplementedError
 
+    @property
+    def calling(self) -> tuple[int, ...]:
+        """The numbers that are being said now, and do not count as called yet."""
+        return ()
+
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
         """Return the numbers of a card row by row; None if there is no such card."""
         raise NotImplementedError

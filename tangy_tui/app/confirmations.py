@@ -28,13 +28,14 @@ class Confirmation:
 
     `about` is the label of the call that it takes back, or the number of the card that it is about.
     `people` are the ids of the person whom the command names, and of the card's owner if that is
-    another person.
+    another person. `calling` is the label of a number that is being called meanwhile.
     """
 
     kind: ConfirmationKind
     command: GameCommand
     about: str = ""
     people: tuple[str, ...] = ()
+    calling: str = ""
 
 
 def needed_confirmation(command: GameCommand, control: GameController) -> Confirmation | None:
@@ -48,7 +49,8 @@ def needed_confirmation(command: GameCommand, control: GameController) -> Confir
         case EndGame() if not control.supervision.over:
             return Confirmation("end", command)
         case TakeBackCall(label) if called := control.plan.called(label):
-            return Confirmation("take back", TakeBackCall(called), called)
+            calling = control.plan.calling
+            return Confirmation("take back", TakeBackCall(called), called, calling=calling)
         case GoOn() if control.stopped and control.robot.there:
             return Confirmation("move again", command)
         case GoOn() if control.paused_itself and not control.stopped:

@@ -89,6 +89,12 @@ class GamePlanControls:
         number = None if world is None or self._idle else _number_called(world, label)
         return "" if world is None or number is None else world.activity.deck.label(number)
 
+    @property
+    def calling(self) -> str:
+        """The label of the number that Tangy is saying now, "" if it says none."""
+        world = self.world
+        return "" if world is None else "".join(map(world.activity.deck.label, world.calling))
+
     def refuses(self, command: GameCommand) -> StaffNote | None:
         """Return why a command can never work, before its turn; None if it may."""
         match command:

@@ -38,7 +38,7 @@ def confirmation_words(asked: Confirmation, name: Callable[[str], str]) -> Confi
         case "take back":
             return ConfirmationWords(
                 f"Take {asked.about} back?",
-                "It will count as not called, and come again later.",
+                f"{calling_words(asked.calling, asked.about)} {NOT_CALLED}".strip(),
                 "take it back",
                 "leave it",
             )
@@ -85,6 +85,19 @@ def again_confirmation(first: int, last: int) -> ConfirmationWords:
 
 
 NOT_DONE = "Not done."
+NOT_CALLED = "It will count as not called, and come again later."
+
+
+def calling_words(label: str, taken: str) -> str:
+    """Tell that a number is being called, and stays; "" without a label.
+
+    Args:
+        label: the number.
+        taken: the number that staff take back.
+    """
+    if not label:
+        return ""
+    return f"Tangy is calling {label}: {label} stays. After that it takes {taken} back."
 
 
 def called_meanwhile(label: str) -> str:

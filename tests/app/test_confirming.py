@@ -27,6 +27,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.staff import StaffLines
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.policies import load_policy
+from tangy_tui.text.confirmations import confirmation_words
 from tangy_tui.text.questions import NO_QUESTION
 from tests.app.test_interruption import Robot
 
@@ -198,6 +199,19 @@ def test_a_call_is_named_by_the_question(control: GameController) -> None:
     asked = needed_confirmation(TakeBackCall(), control)
     assert asked is not None and asked.command == TakeBackCall(label)
     assert needed_confirmation(TakeBackCall("Z-9"), control) is None
+
+
+def test_the_question_about_a_call_names_the_one_that_is_being_said(
+    control: GameController, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    call_once(control)
+    world = control.supervision.world
+    said = called(control)[-1] % 75 + 1
+    monkeypatch.setattr(type(world), "calling", (said,))
+    asked = needed_confirmation(TakeBackCall(), control)
+    label = world.activity.deck.label(said)
+    assert asked is not None and asked.calling == label != asked.about
+    assert label in confirmation_words(asked, str).line("y")
 
 
 def test_going_on_asks_after_a_pause_of_the_program_alone(control: GameController) -> None:

@@ -135,6 +135,17 @@ def test_a_held_count_down_goes_on_where_it_was(link: FakeLink) -> None:
     assert world.calls_in == pytest.approx(before - 5.0)
 
 
+def test_a_number_is_being_called_until_it_counts(world: LiveWorld, link: FakeLink) -> None:
+    seen: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
+    link.meanwhile = lambda do, time: seen.append((world.calling, world.called_now))
+    do(world, "call number")
+    called = world.called_now
+    assert seen[0] == (called, ()) and seen[-1] == ((), called)
+    link.breaks["perform"] = "emergency stop is pressed"
+    do(world, "call number")
+    assert (world.calling, world.called_now) == ((), called)
+
+
 def test_an_interrupted_call_does_not_count(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.breaks["perform"] = "emergency stop is pressed"

@@ -16,8 +16,10 @@ from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.confirmations import called_meanwhile
+from tangy_tui.text.control import WAITS_FOR_YOU
 from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.staff_view import TIME_FIRST
+from tangy_tui.text.staff_view import WAITS_FOR_YOU as TANGY_WAITS
 from tangy_tui.ui import run as opening
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
@@ -68,6 +70,45 @@ async def test_the_question_about_a_call_tells_of_a_call_that_came_meanwhile(
         await pilot.press("y")
         await until_shown(pilot, lambda: asked not in world.called_now)
         assert meanwhile in world.called_now
+
+
+@pytest.mark.slow
+async def test_a_call_is_taken_back_after_the_one_that_is_being_said(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
+) -> None:
+    label = workspace.activity.deck.label
+    async with run(app=program) as pilot:
+        room = live(pilot).query_one(RoomView)
+        await until_shown(pilot, lambda: len(world.called_now) >= 2)
+        link.most = len(link.said)
+        await until_shown(pilot, lambda: len(world.calling) == 1)
+        (said,), asked = world.calling, world.called_now[-1]
+        await pilot.press("f2")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        assert label(said) in screen_text(pilot.app) and said not in world.called_now
+        await pilot.press("y")
+        await pilot.pause()
+        assert asked in world.called_now
+        link.most = len(link.said)  # the number is said, and the group is told of the other
+        await until_shown(pilot, lambda: asked not in world.called_now)
+        assert said in world.called_now and live(pilot).working
+        await until_shown(pilot, lambda: room.scene.called == world.called_now)
+        link.most = 10_000
+
+
+@pytest.mark.slow
+async def test_no_call_is_counted_down_while_tangy_waits_for_an_answer(
+    run: Run, program: Program, world: LiveWorld
+) -> None:
+    world.pace = 30.0
+    async with run(app=program, size=SMALL) as pilot:
+        await until_shown(pilot, lambda: len(world.called) == 1)
+        await until_shown(pilot, lambda: "next call in 30 s" in screen_text(pilot.app))
+        await pilot.press("o")
+        await until_shown(pilot, lambda: live(pilot).control.phase == "asking")
+        line = live(pilot).query_one(StatusLine)
+        await until_shown(pilot, lambda: line.status.note == WAITS_FOR_YOU)
+        await until_shown(pilot, lambda: TANGY_WAITS in screen_text(pilot.app))
 
 
 @pytest.mark.slow

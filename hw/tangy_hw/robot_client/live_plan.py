@@ -30,6 +30,8 @@ class CallOrder:
     def __init__(self, numbers: Sequence[int]) -> None:
         self.called: list[int] = []
         """Numbers that count as called, the latest last."""
+        self.calling: tuple[int, ...] = ()
+        """Numbers that are being said now, and do not count as called yet."""
         self._numbers = list(numbers)
 
     def resume(self, past: PastGame, activity: Activity) -> None:
@@ -41,6 +43,11 @@ class CallOrder:
     def next(self) -> tuple[int, ...]:
         """The next number, if one is left."""
         return tuple(self._numbers[len(self.called) : len(self.called) + 1])
+
+    def count(self, numbers: Sequence[int]) -> None:
+        """Count numbers as called, now that they were said."""
+        self.called.extend(numbers)
+        self.calling = ()
 
     def labels(self, deck: Deck, most: int = LAST_CALLS) -> tuple[str, ...]:
         """Return the labels of the latest numbers, at most `most`, the newest first."""
@@ -134,6 +141,11 @@ class LivePlan(PlannedGame):
     def called_now(self) -> tuple[int, ...]:
         """Numbers that count as called."""
         return tuple(self.calls.called)
+
+    @property
+    def calling(self) -> tuple[int, ...]:
+        """The numbers that are being said now, and do not count as called yet."""
+        return self.calls.calling
 
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
         """Return the numbers of a printed card, None if there is no such card."""

@@ -190,7 +190,7 @@ class LiveWorld(LivePlan):
                     numbers = found
                     response, succeeded = self._carry_out(action, numbers)
         except DeviceError as error:
-            self.broken, numbers = str(error), ()
+            self.broken, numbers, self.calls.calling = str(error), (), ()
         self._executed(behaviour, succeeded)
         self.commands.settle()
         if not self.broken and not self.over:
@@ -221,7 +221,7 @@ class LiveWorld(LivePlan):
         self._announce(action, numbers)
         match behaviour.effect:
             case "draw":
-                self.calls.called.extend(numbers)
+                self.calls.count(numbers)
                 self._due = self.link.time + self.pace
                 with suppress(Preempted):  # it counts as called, whatever happens now
                     self.commands.wait(min(self.pace, LOOK_SECONDS), asks=True)
@@ -246,7 +246,7 @@ class LiveWorld(LivePlan):
         """Speak, show and gesture; the public screen shows seats instead of people's names."""
         name, fill, deck = self.name_of(action.target), self.activity.fill, self.activity.deck
         seat, behaviour = self.seat_of(action.target), action.behaviour
-        called = numbers if action.behaviour.effect == "draw" else ()
+        called = self.calls.calling = numbers if action.behaviour.effect == "draw" else ()
         picture = Picture(
             fill(action.image, seat, numbers),
             deck.label(called[0]) if called else "",

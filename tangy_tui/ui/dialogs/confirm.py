@@ -65,6 +65,8 @@ class ConfirmDialog(Dialog[bool]):
     def compose(self) -> ComposeResult:
         """Lay out question, detail and keys."""
         self.yes_key = yes_key_of(self.app)
+        if self._also is not None:
+            self._since = clean(self._also())
         yield Static(self._content(), id="confirm", classes="box")
 
     def _content(self) -> Content:

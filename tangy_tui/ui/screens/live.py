@@ -47,6 +47,7 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.control import (
     BUSY,
     NOT_WHILE_WORKING,
+    WAITS_FOR_YOU,
     WAITS_SHORT,
     WHO_NEEDS_HELP,
     waits_words,
@@ -374,6 +375,8 @@ class LiveScreen(PlayScreen):
         """Describe what the robot is doing, or the effect of the keys."""
         if self.control.stopped or self._learning or self.at_rest or not self.control.going:
             return super()._note()
+        if self.control.phase == "asking":
+            return WAITS_FOR_YOU
         level = self.control.autonomy.level
         autonomy = live_keys.DIAL[level] if level != AUTONOMY[0] else ""
         return self._doing() or self._until_call() or autonomy
@@ -391,5 +394,6 @@ class LiveScreen(PlayScreen):
         return f"drives to {'the front' if going == FRONT else self._workspace.name(going)}"
 
     def _until_call(self) -> str:
-        left = 0.0 if self.working else self.world.calls_in
+        counts = self.control.phase == "running" and not self.working
+        left = self.world.calls_in if counts else 0.0
         return f"next call in {ceil(left)} s" if left else ""

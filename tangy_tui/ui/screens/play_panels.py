@@ -136,6 +136,8 @@ class PlayPanels(TangyScreen[Tally]):
             called = tuple(past.called(world.activity))
             view = replace(view, seconds=past.seconds, called=called, paused=0.0)
             self.query_one(RoomView).show(replace(world.scene(), called=called))
+        elif view.called != self.query_one(RoomView).scene.called:
+            self.picture.show_scene(0, drive=False, pace=0)
         show_view(
             self.query_one(StaffPanel),
             self.query_one(CallBoard),

@@ -41,7 +41,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
 from tangy_tui.learning.verification import Verified
-from tangy_tui.text.confirmations import called_meanwhile, confirmation_words
+from tangy_tui.text.confirmations import called_meanwhile, calling_words, confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
 from tangy_tui.text.typed_commands import (
@@ -143,13 +143,18 @@ class PlayStaff(PlayPanels):
 
     async def _make_sure(self, asked: Confirmation) -> None:
         """Ask about a command; the game waits, also until it is carried out."""
-        words = confirmation_words(asked, self._workspace.name)
+        words = confirmation_words(replace(asked, calling=""), self._workspace.name)
+        plan = self.control.plan
+        last = plan.called("")
 
         def called_since() -> str:
-            label = self.control.plan.called("") if asked.kind == "take back" else ""
+            if asked.kind != "take back":
+                return ""
+            if calling := plan.calling:
+                return calling_words(calling, asked.about)
+            label = plan.called("")
             return called_meanwhile(label) if label not in ("", asked.about, last) else ""
 
-        last = self.control.plan.called("")
         dialog = ConfirmDialog(
             words.question, words.detail, yes=words.yes, no=words.no, also=called_since
         )

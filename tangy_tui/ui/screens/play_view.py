@@ -60,6 +60,8 @@ def _next(shown: ViewSource) -> str:
         return f"{text.OVER} {said}".rstrip()
     if control.stopped:
         return f"{stopped_words(control.stopped_by)}."
+    if control.phase == "asking":
+        return text.WAITS_FOR_YOU
     if control.welcomes:
         return text.welcomes_words(control.welcomes)
     found = next_step(world, control.supervision.policy)
