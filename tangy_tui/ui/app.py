@@ -25,6 +25,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.text import program as text
 from tangy_tui.text.keys import with_keys
+from tangy_tui.ui.blank_screen import BlankScreen
 from tangy_tui.ui.clean_output import CleanOutput, clean
 from tangy_tui.ui.key_reading import KeyReader, prepare_stop
 from tangy_tui.ui.keys import DEFAULT, bind
@@ -132,6 +133,7 @@ class TangyApp(App[None]):
         self.frames = HeldWrites(lambda: None if self.is_headless else self._driver)
         self._shown = ScreenDiff()
         self._measured = False
+        self._blank = BlankScreen()
         self._question = question
         self.keymap = keymap
         self._link = link
@@ -147,7 +149,7 @@ class TangyApp(App[None]):
             self._measured = True
             if self.round_trip is not None:
                 self.round_trip.resized(event.size)
-        if not self._reader.takes(event):
+        if not (self._blank.hides(event, self.keymap) or self._reader.takes(event)):
             await super().on_event(event)
 
     def get_default_screen(self) -> Screen[Any]:
@@ -166,7 +168,7 @@ class TangyApp(App[None]):
         for number, code in ((signal.SIGHUP, HANGUP_CODE), (signal.SIGTERM, TERMINATED_CODE)):
             # Not on Windows, and not outside of the main thread.
             with suppress(NotImplementedError, RuntimeError, ValueError):
-                loop.add_signal_handler(number, self._signalled, number.name, code)
+                loop.add_signal_handler(number, self.leave, code, f"{number.name} was received")
         self.call_after_refresh(Thread(target=prepare_stop, daemon=True).start)
         if not gc.isenabled():
             self.set_timer(LOADED_SECONDS, collect_again)
@@ -237,6 +239,8 @@ class TangyApp(App[None]):
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
         """Write only the cells that changed, if any."""
+        if renderable is not None:
+            self._blank.drawn(screen)
         if (
             isinstance(renderable, LayoutUpdate | ChopsUpdate)
             and self._driver is not None
@@ -377,9 +381,6 @@ class TangyApp(App[None]):
         theme = self.current_theme
         self.set_class(theme.dark, "-dark-mode", update=False)
         self.set_class(not theme.dark, "-light-mode", update=False)
-
-    def _signalled(self, name: str, code: int) -> None:
-        self.leave(code, f"{name} was received")
 
 
 def _actions_provider() -> type[Provider]:

@@ -17,6 +17,7 @@ from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.text.rooms import no_chosen_room
 from tangy_tui.text.session_reports import REPORTS
 from tangy_tui.ui import policy_opening
+from tangy_tui.ui.blank_screen import BEHIND
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.drills import hold_drill
@@ -89,13 +90,13 @@ class Program(SoundingApp):
             return found
 
         home = HomeScreen(far, note=self.workspace.activity.title)
-        home.set_class(self._start is not None, "-behind")
+        home.set_class(self._start is not None, BEHIND)
         return home
 
     def show_home(self) -> None:
         """Show the home screen, hidden so far behind the questions at the start."""
         for screen in self.screen_stack:
-            screen.remove_class("-behind")
+            screen.remove_class(BEHIND)
 
     def _tell_of_log(self) -> None:
         """Report the problems of the log and the events left out, each once."""
@@ -116,7 +117,7 @@ class Program(SoundingApp):
         """Open the choice, unless one is being opened: a key may arrive twice."""
         if self._busy or self._opening or not isinstance(self.screen, HomeScreen):
             return
-        if self.screen.has_class("-behind"):  # the key was typed before anything was seen
+        if self.screen.has_class(BEHIND):  # the key was typed before anything was seen
             return
         match event.id:
             case "teach":

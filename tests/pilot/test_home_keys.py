@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import pytest
+from textual import events
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app import robot_opening
@@ -47,6 +48,34 @@ async def test_a_repeated_enter_begins_one_demonstration(run: Run, workspace: Wo
         pilot.type("y")
         await pilot.pause()
         assert len(read_library(workspace.store, "bingo").entries) <= 1
+
+
+async def test_keys_read_before_the_first_screen_was_shown_do_nothing(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        for key in ("t", "enter", "f8"):
+            early = events.Key(key, None)
+            early.time = 0.0
+            pilot.app.post_message(early)
+        await pilot.pause()
+        await pilot.pause()
+        assert len(pilot.app.screen_stack) == 1
+        await pilot.press("t", "enter")
+        assert isinstance(pilot.app.screen, TeachScreen)
+
+
+async def test_a_stop_read_before_the_first_screen_was_shown_counts(
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        reasons: list[str] = []
+        monkeypatch.setattr(pilot.app, "stop", reasons.append)
+        early = events.Key("ctrl+x", None)
+        early.time = 0.0
+        pilot.app.post_message(early)
+        await pilot.pause()
+        assert len(reasons) == 1
 
 
 async def test_stop_at_home_says_that_nothing_moves(
