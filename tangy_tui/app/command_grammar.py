@@ -155,7 +155,7 @@ TEACHING: dict[str, TeachingWord] = {
 PERFORMED = frozenset(
     {
         *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
-        *("learn", "library", "guided", "filter", "quit", "name"),
+        *("learn", "library", "guided", "filter", "quit", "name", "messages"),
     }
 )
 """Actions of the keymap whose typed words work on the teaching screen as their keys do elsewhere.
@@ -209,7 +209,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("answer: B", "the same for the person the game is waiting for"),
     ("void NAME", "the last response of somebody does not count"),
     ("drive left 2", "drives by hand for 2 s: forward, back, left, right"),
-    ("where, why", "says what Tangy sees, and why it does the next thing"),
+    ("where, why", "says what Tangy sees; what it does now and next, and why"),
     ("what, faults", "says what to do about a fault, and all faults of this game"),
     ("seen, expert, reached, clear", "about a fault that halts Tangy"),
     ("wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, called, over"),
@@ -218,6 +218,16 @@ MEANINGS: tuple[tuple[str, str], ...] = (
 """The commands that help lists, with their meanings."""
 
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
+_TANGY = r"(?:you|it|tangy|the robot|he|she)"
+_WHY = re.compile(
+    r"why(?: (?:that|this|now|not|so))?"
+    rf"|(?:why|what) (?:is|are|does|do|did|will|would) {_TANGY}"
+    r"(?: (?:doing|do|going to do|up to|waiting|waiting for|wait|wait for|stand|standing))"
+    r"(?: (?:that|this|it|there|here|still))?(?: (?:now|next|then|right now|at the moment))?"
+    r"|what(?: is|'s|s) (?:happening|going on|next|up)(?: here)?(?: now| next)?"
+    r"|what (?:happens|comes) (?:now|next)|what next|what now"
+)
+"""Questions about what Tangy does now or next."""
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
@@ -373,7 +383,10 @@ def read_settling(text: str, remark: Remark) -> Settle | None:
 
 def read_inquiry(text: str) -> Inquiry | None:
     """Parse words as a question to the program, None if they are none."""
-    return INQUIRIES.get(" ".join(text.split()).casefold())
+    words = " ".join(text.split()).casefold()
+    if words in INQUIRIES:
+        return INQUIRIES[words]
+    return "why" if _WHY.fullmatch(words.replace("\u2019", "'").rstrip(" ?.!")) else None
 
 
 def read_answer(text: str) -> Reply | None:

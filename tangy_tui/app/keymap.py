@@ -48,6 +48,7 @@ ACTIONS: tuple[KeyAction, ...] = (
     _line("talk", ("ctrl+t", "t"), "talk"),
     _line("listen", ("f9",), "pause listening"),
     _line("name", ("ctrl+n",), "name"),
+    KeyAction("messages", ("exclamation_mark",), "messages"),
     KeyAction("command", ("colon",), "command"),
     KeyAction("filter", ("slash",), "filter"),
     KeyAction("zoom", ("plus",), "enlarge"),

@@ -24,7 +24,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "take back": ("undo", "wrong", "mistake", "back"),
     "take over": ("control", "myself"),
     "end": ("finish", "finished", "quit", "exit", "over", "end"),
-    "why": ("why", "reason"),
+    "why": ("why", "reason", "what", "doing", "happening", "happens", "next", "explain"),
     "several winners": ("winners",),
     "visits on": ("visit", "visits"),
 }

@@ -5,12 +5,14 @@ from __future__ import annotations
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, proposal_words
 from tangy_tui.text.faults import HALTED, advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
+from tangy_tui.text.messages import ABOVE
 from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.situations import Name, state_words
 from tangy_tui.text.staff_lines import (
@@ -57,6 +59,8 @@ class Inquiries:
             return [f"{seat}. {self._name(one.id)}: {person_words(one)}" for seat, one in people]
         if word in WHOSE_CARDS:
             return [cards_line(self._game.world, self._name)]
+        if word == BY_ID["messages"].word:
+            return [ABOVE]
         if word in ANSWERS:
             return [NO_QUESTION]
         if word in ("undo", "redo"):

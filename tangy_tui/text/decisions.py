@@ -70,6 +70,11 @@ def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -
     return sentences
 
 
+def reasons_words(activity: Activity, why: DecisionReasons) -> list[str]:
+    """Explain a decision in sentences, without its situation."""
+    return why_words(activity, why)[1:]
+
+
 def because_words(decision: Decision) -> str:
     """Give the reason in a few words: a rule, a teacher's answer, demonstrations, or votes."""
     if decision.whatever and not decision.seen:
@@ -142,6 +147,15 @@ WHY_ASKED = "Why does Tangy ask?"
 def why_step_title(number: int) -> str:
     """Return the title of the explanation of a step."""
     return f"Step {number}: why this?"
+
+
+WHY_NOW = "What Tangy does, and why"
+"""The title of the explanation of the last step and the next one."""
+
+
+def last_step_heading(number: int, behaviour: str) -> str:
+    """Return the heading of the explanation of the last step, below that of the next one."""
+    return f"Step {number}, the last one so far: {behaviour}"
 
 
 def why_row_title(policy: str) -> str:

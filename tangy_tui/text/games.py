@@ -27,7 +27,7 @@ from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted, of_times, often
-from tangy_tui.text.situations import Name, moment_words, once_words
+from tangy_tui.text.situations import Name, kept_words, moment_words, once_words
 
 if TYPE_CHECKING:
     from tangy_profiles.state import Response
@@ -99,7 +99,7 @@ def game_lines(
             return [f"Tangy asks. {reason} What should it do?"]
         case Taught(teacher, lesson):
             return [
-                f"   Tangy has learnt that from {teacher}, as {lesson.policy.name!r}.",
+                f"   Tangy has learnt that from {teacher}. {kept_words(lesson.policy.name)}",
                 f"   {replay_words(activity, lesson.replay)}",
             ]
         case DoneOnce(_, instead):

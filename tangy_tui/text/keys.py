@@ -27,6 +27,7 @@ NAMES: Mapping[str, ActionName] = MappingProxyType(
         "talk": ActionName("Talk to Tangy, or end what you say", "talk"),
         "listen": ActionName("Stop listening, or listen again", "listening"),
         "name": ActionName("Change your name", "your name"),
+        "messages": ActionName("Read the last messages again", "messages"),
         "command": ActionName("Type a command", "type"),
         "filter": ActionName("Show only lines with some words", "filter"),
         "zoom": ActionName("Enlarge the panel", "enlarge"),

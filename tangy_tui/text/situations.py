@@ -177,11 +177,17 @@ def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
 
 
 def lesson_words(activity: Activity, lesson: Lesson) -> str:
-    """Describe the lesson of an answer: situation, behaviour from now on, and teacher."""
+    """Describe the lesson of an answer: situation, behaviour, teacher, and what Tangy keeps."""
     made = lesson.demonstration
     step = made.steps[-1]
     where = activity.in_words(step.state.situation)
-    return f"Learnt from {made.teacher}: {where} -> {activity.behaviour_words(step.behaviour)}."
+    learnt = f"Learnt from {made.teacher}: {where} -> {activity.behaviour_words(step.behaviour)}."
+    return f"{learnt} {kept_words(lesson.policy.name)}"
+
+
+def kept_words(policy: str) -> str:
+    """Tell that an answer became a demonstration, and which policy Tangy plays by now."""
+    return f"Tangy keeps this as a demonstration, and plays by {policy!r} from now on."
 
 
 ALL_RIGHT = ("all right", "all is right", "that is all right", "all is well", "ok")

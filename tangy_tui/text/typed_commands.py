@@ -18,10 +18,13 @@ SOMEBODY_NEW = "somebody new", "Enter, and type the name"
 
 
 def example_words(rules: GameRules) -> str:
-    """Give examples of commands."""
+    """Give examples of commands, and name the key that explains what Tangy does."""
     claim = f", {rules.claim} 17" if rules.claim else ""
     patterns = f", play for {rules.patterns[-1].name}" if rules.patterns else ""
-    return f"For example: pace 20{claim}{patterns}, take back, left Rosa, here Rosa."
+    return (
+        f"For example: pace 20{claim}{patterns}, take back, left Rosa, here Rosa. To see what "
+        "Tangy does and why: type why, or press {why} without this line."
+    )
 
 
 def claim_words(word: str) -> str:

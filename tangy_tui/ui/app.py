@@ -24,12 +24,12 @@ from textual.screen import Screen
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.text import program as text
-from tangy_tui.text.keys import with_keys
 from tangy_tui.ui.blank_screen import BlankScreen
-from tangy_tui.ui.clean_output import CleanOutput, clean
+from tangy_tui.ui.clean_output import CleanOutput
 from tangy_tui.ui.key_reading import KeyReader, prepare_stop
 from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.messages_again import TellingApp
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
 from tangy_tui.ui.screen_diff import ScreenDiff, TextUpdate
 from tangy_tui.ui.terminal import SERVED, TerminalKind
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from textual.binding import BindingType
     from textual.command import Provider
-    from textual.notifications import SeverityLevel
 
     from tangy_tui.app.keymap import Keymap
     from tangy_tui.app.user_settings import LinkSpeed
@@ -62,7 +61,7 @@ def collect_again() -> None:
     gc.enable()
 
 
-class TangyApp(App[None]):
+class TangyApp(TellingApp):
     """The Textual application. Its screens are pushed from outside.
 
     `return_code` is 0 after a normal end, 129 after the terminal was closed, 143 after SIGTERM.
@@ -334,15 +333,6 @@ class TangyApp(App[None]):
                 driver._disable_mouse_support()
                 driver._mouse = False
         self.mouse = on
-
-    def say(self, sentence: str, *, bad: bool = False, seconds: float | None = None) -> None:
-        """Show a sentence for some s, unless the screen has a better place for it."""
-        sentence = with_keys(sentence, self.keymap)
-        take = getattr(self.screen, "take_sentence", None)
-        if take is not None and take(sentence):
-            return
-        severity: SeverityLevel = "error" if bad else "information"
-        self.notify(clean(sentence), severity=severity, timeout=seconds, markup=False)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List the commands of the palette that have no key."""

@@ -206,10 +206,16 @@ class Dialog(ModalScreen[ResultT]):
 ACTIONS = {"palette": "command_palette", "draw": "draw_again", "begin": "play"}
 """Textual's names of keymap actions, if they differ."""
 
+OF_SCREENS = ("why",)
+"""Actions that each screen carries out in its own way."""
+
 
 async def perform(screen: Screen[Any], id: str, on: bool | None = None) -> None:
-    """Run a keymap action on a screen; set a switch only if it is not already `on`."""
+    """Run a keymap action of a screen or the app; set a switch only if it is not already `on`."""
     app: Any = screen.app
+    if id in OF_SCREENS:
+        await screen.run_action(id)
+        return
     if id == "voice" and on is not None and app.speaker.on == on:
         return
     if id == "listen" and on is not None and (app.hearing is None or app.hearing.on == on):

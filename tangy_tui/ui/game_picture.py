@@ -12,6 +12,7 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.speech import with_names
 from tangy_profiles.game_records import CallMade, CallStage
 from tangy_profiles.present_moment import as_present
+from tangy_tui.app.staff_view import next_step
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import (
     Acted,
@@ -45,7 +46,7 @@ from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.keys import keymap_of
-from tangy_tui.ui.reasons import DecisionGround, why_asked, why_row, why_step
+from tangy_tui.ui.reasons import DecisionGround, why_asked, why_now, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -60,7 +61,7 @@ DRIVING_SHARE = 0.5
 NOT_DONE = "not done: "
 """The prefix of a behaviour that was not completed."""
 
-TAUGHT_SECONDS = 6.0
+TAUGHT_SECONDS = 12.0
 """Duration of the message with the lesson of an answer, in s."""
 
 
@@ -184,11 +185,19 @@ class GamePicture:
             self._stage = self._workspace.activity.in_words(joint_state(now.ahead).situation)
         return self._stage
 
-    def why(self, chosen: int | None) -> WhyDialog | None:
-        """Explain the chosen step, Tangy's question, or the last step; None: there is none."""
+    def why(self, chosen: int | None, coming: str = "") -> WhyDialog | None:
+        """Explain the chosen step, Tangy's question, or the next step and the last; None: no step.
+
+        `coming` is the next step in words, "" if it is unknown.
+        """
         question = self._supervision.question
         if chosen is None and question is not None:
             return why_asked(self._workspace, self._policy, question.state.situation)
+        ahead = next_step(self._supervision.world, self._supervision.policy)
+        if chosen is None and coming and ahead is not None:
+            ground = self.grounds[-1] if self.grounds else None
+            ahead_of = coming, ahead[1].situation
+            return why_now(self._workspace, self._supervision.policy, ahead_of, ground)
         last = self.grounds[-1].acted.number if self.grounds else 0
         return self.why_step(last if chosen is None else chosen)
 

@@ -16,9 +16,11 @@ from tangy_tui.app.command_grammar import (
     MEANINGS,
     AgainFrom,
     Leave,
+    Perform,
     read_answer,
     read_command,
     read_inquiry,
+    read_screen,
     read_teaching,
 )
 from tangy_tui.app.game_commands import (
@@ -185,3 +187,28 @@ def test_no_phrase_of_an_activity_is_read_as_another_command(activity: str) -> N
     taken = [one for one in phrases if read_teaching(one, title) or read_inquiry(one)]
     in_games = [one for one in phrases if read_command(one, str, title) is not None]
     assert (taken, in_games) == ([], [])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("why", "Why?", "why that", "What are you doing?", "what is Tangy doing now"),
+        *("what is happening now", "what's going on", "What happens next?", "what next"),
+        *("why are you waiting", "why do you do that?", "what does the robot do next"),
+        *("what are you waiting for", "what will you do now"),
+    ],
+)
+def test_questions_about_what_tangy_does_ask_why(text: str) -> None:
+    assert read(text) is None
+    assert read_inquiry(text) == "why"
+    assert read_screen(text) == Perform("why")
+
+
+@pytest.mark.parametrize("text", ["what should i do", "what is wrong with Rosa", "why did she win"])
+def test_other_questions_do_not_ask_why(text: str) -> None:
+    assert read_inquiry(text) != "why"
+
+
+def test_messages_are_asked_for_by_their_word() -> None:
+    assert read_screen("messages") == Perform("messages")
+    assert read("messages") is None

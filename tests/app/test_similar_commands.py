@@ -51,6 +51,7 @@ def test_the_nearest_command_is_named() -> None:
         ("it is a mistake", "take back"),
         ("repaet the last one", "call again"),
         ("pasue", "pause"),
+        ("what do you mean by that", "why"),
     ],
 )
 def test_words_suggest_a_command(typed: str, near: str, rules: GameRules) -> None:

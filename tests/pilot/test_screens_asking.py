@@ -117,6 +117,8 @@ async def test_a_question_is_answered_in_place_and_the_game_plays_to_its_end(
         await over(pilot, screen)
         said = " ".join(screen.query_one(LogView).sentences)
         assert "Learnt from ann: " in said
+        assert "as a demonstration" in said
+        assert repr(screen.control.supervision.policy.name) in said
         assert "earlier steps were gone through: nothing else changed." in said
         assert "The game is over" in said
         words = workspace.activity.in_words(gap(workspace))

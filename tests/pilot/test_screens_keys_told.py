@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.ui.dialogs.messages import MessagesDialog
 from tangy_tui.ui.listing import listed
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import help_for
@@ -97,3 +98,19 @@ async def test_the_key_line_after_the_last_conflict_lists_the_remaining_keys(
         await pilot.press("f2")
         await pilot.pause()
         assert "1-9 right" in pilot.lines()[-1]
+
+
+async def test_messages_can_be_read_again_with_their_times(run: Run) -> None:
+    async with run(HomeScreen()) as pilot:
+        pilot.app.say("The first message.")
+        pilot.app.say("The second message.")
+        pilot.app.clear_notifications()
+        await pilot.pause()
+        assert "The first message." not in pilot.text()
+        await pilot.press("exclamation_mark")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, MessagesDialog)
+        text = pilot.text()
+        assert 0 < text.index(" The second message.") < text.index(" The first message.")
+        at, _ = pilot.app.told[0]
+        assert f"{at:%H:%M:%S} The first message." in text

@@ -9,6 +9,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
+from tangy_tui.app.staff_view import next_step
 from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import effects_of
@@ -29,6 +30,7 @@ from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
+from tests.support.waiting import until_shown
 
 
 @pytest.fixture
@@ -329,7 +331,7 @@ async def test_two_letters_at_home_are_one_choice(
 
 
 @pytest.mark.slow
-async def test_why_explains_the_last_or_the_chosen_step(
+async def test_why_explains_the_next_and_the_last_or_the_chosen_step(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async with run(app=playing(workspace, policy)) as pilot:
@@ -341,9 +343,18 @@ async def test_why_explains_the_last_or_the_chosen_step(
         assert ground.acted.choice is not None
         await pilot.press("w")
         await pilot.pause()
-        text = screen_text(pilot.app)
-        assert isinstance(pilot.app.screen, WhyDialog)
-        assert f"Step {len(screen.picture.grounds)}: why this?" in text
+        dialog, text = pilot.app.screen, screen_text(pilot.app)
+        assert isinstance(dialog, WhyDialog)
+        coming = next_step(screen.control.supervision.world, policy)
+        assert coming is not None
+        assert dialog.coming is not None
+        assert dialog.coming.why.situation == coming[1].situation
+        assert dialog.coming.why.decision.behaviour == coming[0].behaviour
+        assert dialog.coming.words in " ".join(text.replace("│", " ").split())
+        assert dialog.why.situation == ground.acted.state.situation
+        assert f"Step {len(screen.picture.grounds)}, the last one" in text
+        await pilot.press("end")
+        text += screen_text(pilot.app)
         for number in ground.acted.choice.draws.values():
             assert f"{number:.3f}" in text
         await pilot.press("escape", "2", "home", "enter")
@@ -360,6 +371,17 @@ async def test_why_explains_the_last_or_the_chosen_step(
         await pilot.pause()
         assert screen.query_one(Transcript).chosen is None
         assert "Leave" not in screen_text(pilot.app)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", ["why", "what are you doing"])
+async def test_a_typed_question_explains_what_tangy_does(
+    run: Run, workspace: Workspace, policy: Policy, words: str
+) -> None:
+    async with run(app=playing(workspace, policy)) as pilot:
+        await pause_at_once(pilot)
+        await pilot.press(":", *words, "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, WhyDialog))
 
 
 async def test_leaving_during_a_game_asks_and_is_logged(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.cells import cell_len
@@ -24,6 +25,7 @@ from tangy_tui.text.decisions import (
     WHY_HEADINGS,
     chosen_words,
     earlier_words,
+    reasons_words,
     strategy_title,
     why_words,
 )
@@ -43,6 +45,15 @@ MOST = 8
 """The number of steps of a group that are shown at first, the newest."""
 
 
+@dataclass(frozen=True, slots=True)
+class ComingStep:
+    """The step that Tangy takes next, in words, its explanation, and a heading for the last one."""
+
+    words: str
+    why: DecisionReasons
+    before: str
+
+
 class WhyDialog(Dialog[None]):
     """The situation, the votes, the steps behind a decision, and the draws of a strategy.
 
@@ -58,10 +69,11 @@ class WhyDialog(Dialog[None]):
         Binding("escape,q,w", "close", "Close", key_display="esc"),
     ]
     HELP = (
-        "What this decision rests on: how sure Tangy is of each behaviour, which demonstrated "
-        "steps say so or say otherwise, and for a way of speaking the number that was drawn from "
-        "what is believed of each. Up and down choose a step and scroll; Enter opens it where it "
-        "was demonstrated. The newest steps come first; Enter on the last line shows the others."
+        "What Tangy does next and why, and what its last step rests on: how sure Tangy is of each "
+        "behaviour, which demonstrated steps say so or say otherwise, and for a way of speaking "
+        "the number that was drawn from what is believed of each. Up and down choose a step and "
+        "scroll; Enter opens it where it was demonstrated. The newest steps come first; Enter on "
+        "the last line shows the others."
     )
 
     def __init__(
@@ -72,6 +84,7 @@ class WhyDialog(Dialog[None]):
         *,
         title: str = "Why this?",
         remarks: Sequence[str] = (),
+        coming: ComingStep | None = None,
     ) -> None:
         """Create the dialog.
 
@@ -81,6 +94,7 @@ class WhyDialog(Dialog[None]):
             choice: the strategy that was chosen with the decision, if any.
             title: the title of the dialog.
             remarks: sentences before the others, such as who answered what.
+            coming: the step that follows the explained one; it is explained first.
         """
         super().__init__(None)
         self._workspace = workspace
@@ -88,6 +102,8 @@ class WhyDialog(Dialog[None]):
         self._choice = choice
         self._title = clean(title)
         self._remarks = tuple(remarks)
+        self.coming = coming
+        """The next step of the game, explained before the last one."""
         self._whole = set[int]()  # the groups of steps that are shown in full
         library = read_library(workspace.store, workspace.activity.name)
         self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
@@ -125,6 +141,11 @@ class WhyDialog(Dialog[None]):
 
     def _write(self, width: int) -> list[PageLine]:
         lines: list[PageLine] = []
+        if (coming := self.coming) is not None:
+            lines += paragraph(clean(coming.words), width, "strong")
+            for sentence in reasons_words(self._workspace.activity, coming.why):
+                lines += paragraph(clean(sentence), width)
+            lines += heading(clean(coming.before))
         words = why_words(self._workspace.activity, self._why, votes=False)
         for sentence in (*self._remarks, *words):
             lines += paragraph(clean(sentence), width)

@@ -24,7 +24,8 @@ HELP = (
     "go (·), where else it may be (∴), and what it sees in its way that the plan of the room has "
     "not (*). {stop} stops the robot at once, wherever you are, and {pause} lets it go on. Saying "
     "stop the robot does the same, if there is a microphone. What cannot be undone asks first. "
-    "{command} takes commands in words, also those that have no key."
+    "{command} takes commands in words, also those that have no key. {messages} shows the last "
+    "messages again."
 )
 
 BINDINGS: list[BindingType] = [
@@ -53,8 +54,9 @@ def keys(
     return (
         "pause" if going else "pause:go on", "stop",
         *(("tell",) if tells or not cards else ()),
-        *(("claim", "slower", "faster") if cards else ()), "autonomy",
-        *(("undo:call back",) if cards else ()), "command", *(("presence",) if cards else ()),
-        *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "why", "inside",
-        ("1-7", "show"), "back:end", "help",
+        *(("claim",) if cards else ()), "why", "command",
+        *(("slower", "faster") if cards else ()), "autonomy",
+        *(("undo:call back",) if cards else ()), *(("presence",) if cards else ()), "messages",
+        *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "inside",
+        ("1-7", "show"), "back:leave", "help",
     )  # fmt: skip

@@ -17,7 +17,7 @@ def keys(*, going: bool, over: bool = False) -> tuple[str | Key, ...]:
         return ("next:play again", "why", ("1-7", "show"), "filter", "back", "help")
     return (
         "pause" if going else "pause:go on", "step", "slower", "faster", "why", ("1-7", "show"),
-        "filter", "inject", "next:game", "skip", "back", "help",
+        "filter", "inject", "next:game", "skip", "back:leave", "help",
     )  # fmt: skip
 
 

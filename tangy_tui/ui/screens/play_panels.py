@@ -28,9 +28,10 @@ from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.keys import keymap_of
+from tangy_tui.ui.messages_again import remember
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.play_keys import keys
-from tangy_tui.ui.screens.play_view import ViewSource, show_view
+from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view
 from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
@@ -130,7 +131,7 @@ class PlayPanels(TangyScreen[Tally]):
 
     def show_staff(self) -> None:
         """Update the view for staff."""
-        world, name = self._supervision.world, staff_names(self._workspace.name)
+        world = self._supervision.world
         view = self.control.view()
         if (past := self.control.past) is not None and self._supervision.over:  # staff are asked
             called = tuple(past.called(world.activity))
@@ -142,9 +143,15 @@ class PlayPanels(TangyScreen[Tally]):
             self.query_one(StaffPanel),
             self.query_one(CallBoard),
             view,
-            ViewSource(world, self.control, self.minutes, name, self.picture.said),
+            self._source(),
         )
         self.picture.show_stage()
+
+    def _source(self) -> ViewSource:
+        """Return what the view for staff is shown with."""
+        name = staff_names(self._workspace.name)
+        world = self._supervision.world
+        return ViewSource(world, self.control, self.minutes, name, self.picture.said)
 
     def went_back(self) -> bool:
         """Close a message, take the cursor off the steps, or show the next step again.
@@ -179,11 +186,12 @@ class PlayPanels(TangyScreen[Tally]):
         return SensorsScreen(self._workspace, sensors, health=health, shown=shown)
 
     def action_why(self) -> None:
-        """Explain the chosen step, Tangy's question, or the last step."""
+        """Explain the chosen step, Tangy's question, or the next step and the last one."""
         chosen = self.query_one(Transcript).chosen
         fault = self._faults.asked_about if chosen is None else None
+        coming = "" if self._supervision.over else next_line(self._source())
         dialog: Screen[Any] | None
-        dialog = self._faults.dialog(fault.id) if fault else self.picture.why(chosen)
+        dialog = self._faults.dialog(fault.id) if fault else self.picture.why(chosen, coming)
         if dialog is not None:
             self.app.push_screen(dialog)
         else:
@@ -302,9 +310,13 @@ class PlayPanels(TangyScreen[Tally]):
     def _tell_now(self, sentence: str, kind: Kind) -> None:
         """Show the result of a key, or why it has no effect, at every window size."""
         sentence = self._told(sentence)
-        if not self.take_sentence(sentence, kind):
+        if self.take_sentence(sentence, kind):
+            remember(self.app, sentence)
+        else:
             self._write(sentence, kind)
-            if not self.query_one(LogView).display:
+            if self.query_one(LogView).display:
+                remember(self.app, sentence)
+            else:
                 self.app.clear_notifications()
                 self.notify(
                     sentence,

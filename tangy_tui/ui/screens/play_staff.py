@@ -230,7 +230,7 @@ class PlayStaff(PlayPanels):
         dialog = CommandDialog(
             lambda typed: read(typed) or read_screen(typed),
             begun,
-            *(asked or (TITLE, example_words(activity.rules))),
+            *(asked or (TITLE, self._told(example_words(activity.rules)))),
             lambda typed: nearest_commands(typed, names, activity.rules),
         )
         command = await self.app.push_screen_wait(dialog)

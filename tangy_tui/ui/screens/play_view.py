@@ -44,14 +44,15 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
     columns = () if board.display else shown.world.activity.deck.columns
     panel.show(
         call,
-        _next(shown),
+        next_line(shown),
         _facts(view, shown, last=not columns),
         person_lines(view.people, shown.name),
         [column_row(column, view.called, BOARD) for column in columns],
     )
 
 
-def _next(shown: ViewSource) -> str:
+def next_line(shown: ViewSource) -> str:
+    """Tell what Tangy does next and why, or why it does nothing."""
     control, world = shown.control, shown.world
     if control.supervision.over:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""

@@ -1,0 +1,64 @@
+"""The messages of the application, which vanish after some seconds, and can be read again."""
+
+from __future__ import annotations
+
+from collections import deque
+from datetime import datetime
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual.app import App
+
+from tangy_tui.text.keys import with_keys
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.keys import bind, keymap_of
+
+if TYPE_CHECKING:
+    from textual.binding import BindingType
+    from textual.notifications import SeverityLevel
+
+MOST = 100
+"""The most messages that are kept."""
+
+
+class TellingApp(App[None]):
+    """Tells sentences in messages, and lists the last ones."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bind("messages")]
+
+    def __init__(self, **settings: Any) -> None:
+        """Create the application; `settings` are Textual's."""
+        super().__init__(**settings)
+        self.told: deque[tuple[datetime, str]] = deque(maxlen=MOST)
+        """The last messages, with the local time at which each was shown."""
+
+    def remember(self, sentence: str) -> None:
+        """Keep a sentence that was told."""
+        self.told.append((datetime.now().astimezone(), clean(sentence)))
+
+    def notify(self, message: str, **more: Any) -> None:
+        """Show a message for some s, and keep it."""
+        self.remember(message)
+        super().notify(message, **more)
+
+    def say(self, sentence: str, *, bad: bool = False, seconds: float | None = None) -> None:
+        """Show a sentence for some s, unless the screen has a better place for it."""
+        sentence = with_keys(sentence, keymap_of(self))
+        take = getattr(self.screen, "take_sentence", None)
+        if take is not None and take(sentence):
+            self.remember(sentence)
+            return
+        severity: SeverityLevel = "error" if bad else "information"
+        self.notify(clean(sentence), severity=severity, timeout=seconds, markup=False)
+
+    def action_messages(self) -> None:
+        """List the last messages."""
+        from tangy_tui.ui.dialogs.messages import MessagesDialog
+
+        self.push_screen(MessagesDialog(tuple(self.told)))
+
+
+def remember(app: object, sentence: str) -> None:
+    """Let Tangy's application keep a sentence that a screen showed in a place of its own."""
+    keep = getattr(app, "remember", None)
+    if keep is not None:
+        keep(sentence)
