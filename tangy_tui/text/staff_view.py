@@ -28,7 +28,7 @@ PAUSED = "Paused."
 TIME_FIRST = ", once everybody has had time"
 """Why Tangy does not call the next number yet."""
 WAITS_FOR_YOU = "Tangy waits for your answer."
-OVER = "The game is over. For its report, choose Reports at home."
+OVER = "The game is over."
 
 
 def clock_words(seconds: float) -> str:

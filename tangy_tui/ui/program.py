@@ -72,6 +72,8 @@ class Program(SoundingApp):
         self.new_teacher = False
         """Whether the teacher has just given a name, and so gets the tour."""
         self.eyes = CameraSession(workspace, sensors, live=live)
+        self.leads_home = True
+        """Whether the home screen follows after a game, and not the end of the program."""
         self._busy = False
         self._opening = False
         self._told: set[str] = set()

@@ -18,7 +18,7 @@ from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.text.interruptions import to_be_resumed_words
-from tangy_tui.text.live_games import played_lines
+from tangy_tui.text.live_games import played_lines, report_words
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
 from tangy_tui.ui.drills import hold_drill
@@ -28,6 +28,9 @@ from tangy_tui.ui.program import Program, Start
 from tangy_tui.ui.round_trip import read_replies
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
+
+REPORT = "tangy report"
+"""The command for the report of the last session, in the data folder of this user."""
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import CameraHub
@@ -41,12 +44,16 @@ if TYPE_CHECKING:
     from tangy_tui.speech.input import SpeechInput
 
 
-def run_program(workspace: Workspace, *, ascii_only: bool, voice: bool = False) -> int:
-    """Open the application on its home screen; return the exit status."""
+def run_program(
+    workspace: Workspace, *, ascii_only: bool, voice: bool = False, report: str = REPORT
+) -> int:
+    """Open the application on its home screen; return the exit status.
+
+    `report` is the command for the report of the games that were played.
+    """
     begun = datetime.now(UTC)
     status = _run(workspace, None, ascii_only, voice=voice, asks_name=True)
-    for world in PLAYED_WORLDS:
-        _tell_interrupted(workspace, world, begun)
+    _tell_played(workspace, PLAYED_WORLDS, begun, report, earlier=False)
     return status
 
 
@@ -104,13 +111,15 @@ def run_playing(
     ears: SpeechInput | None = None,
     sensors: CameraHub | None = None,
     past: PastGame | None = None,
+    report: str = REPORT,
 ) -> int:
     """Open the playing screen; return the exit status.
 
     `speed` is a ratio to real time, by default 1 if Tangy speaks or if `sensors` are given,
     which then count as the robot's cameras; otherwise it is faster. Answers to Tangy's questions
-    may be spoken if there are `ears`.
+    may be spoken if there are `ears`. `report` is the command for the games' report.
     """
+    begun = datetime.now(UTC)
     status = _run(
         workspace,
         lambda program: program.play(games, speed, seed, policy, teacher, injections, past),
@@ -120,7 +129,7 @@ def run_playing(
         sensors=sensors,
         live=sensors is not None,
     )
-    _tell_interrupted(workspace, SIMULATED)
+    _tell_played(workspace, (SIMULATED,), begun, report)
     return status
 
 
@@ -159,6 +168,7 @@ def run_live(
     """
 
     async def start(program: Program) -> None:
+        program.leads_home = False
         chosen = (
             GameToPlay(past) if past is not None else await ask_about_interrupted(program, world)
         )
@@ -179,19 +189,31 @@ def run_live(
 
     begun = datetime.now(UTC)
     status = _run(workspace, start, ascii_only, ears)
-    for line in played_lines(read_games(workspace.store), begun, report):
-        print(plain(line))
-    _tell_interrupted(workspace, world)
+    _tell_played(workspace, (world,), begun, report)
     return status
 
 
-def _tell_interrupted(
-    workspace: Workspace, world: GameWorld, since: datetime | None = None
+def _tell_played(
+    workspace: Workspace,
+    worlds: Sequence[GameWorld],
+    begun: datetime,
+    report: str,
+    *,
+    earlier: bool = True,
 ) -> None:
-    """Tell that a game is not over, and can be resumed; only if it went on `since` a time."""
-    past = find_interrupted(workspace, world)
-    if past is not None and (since is None or past.at >= since):
-        print(plain(to_be_resumed_words(past, len(past.called(workspace.activity)))))
+    """Tell how the games ended, which game can be resumed, and the command for their report.
+
+    Games that ended before the program `begun` are not told; games that were interrupted before
+    it are, if `earlier`.
+    """
+    *told, command = played_lines(read_games(workspace.store), begun, report) or [""]
+    for world in worlds:
+        past = find_interrupted(workspace, world)
+        if past is not None and (earlier or past.at >= begun):
+            told.append(to_be_resumed_words(past, len(past.called(workspace.activity))))
+            command = report_words(report)
+    for line in filter(None, (*told, command)):
+        print(plain(line))
 
 
 def run_drill(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -80,13 +81,14 @@ def open_program(
     If another program runs in the same folder, it opens as an onlooker.
     """
     from tangy_profiles.errors import StoreBusy
-    from tangy_tui.ui.run import run_program
+    from tangy_tui.ui.run import REPORT, run_program
 
+    report = REPORT if data is None else f"{REPORT} --data {shlex.quote(str(data))}"
     try:
         with open_workspace(data, "", REGISTERED, robot=robot) as workspace:
             if robot != USUAL_ROBOT:
                 _check_faults(workspace)
-            return run_program(workspace, ascii_only=ascii_only)
+            return run_program(workspace, ascii_only=ascii_only, report=report)
     except StoreBusy:
         from tangy_tui.text.watching import RUNNING_HERE
 

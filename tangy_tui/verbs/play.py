@@ -148,6 +148,7 @@ def play(
                     ),
                     sensors=sensors,
                     past=past,
+                    report=f"tangy report{common.as_given(data)}",
                 )
             )
         learnt = recall(workspace, policy, quiet=as_json)

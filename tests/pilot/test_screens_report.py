@@ -16,9 +16,8 @@ from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.session_reports import sessions_of
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.games import read_games
-from tangy_tui.text.games import NONE_YET
+from tangy_tui.text.games import NONE_YET, REPORT_AT_HOME
 from tangy_tui.text.session_reports import REPORTS, games_title
-from tangy_tui.text.staff_view import OVER
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import CHOICES, HomeScreen
 from tangy_tui.ui.screens.report import ReportScreen
@@ -95,4 +94,4 @@ async def test_the_list_of_all_commands_finds_the_report(run: Run, workspace: Wo
 
 def test_the_end_of_a_live_game_names_the_way_to_its_report() -> None:
     (item,) = [choice for choice in CHOICES if choice.id == "reports"]
-    assert item.name in OVER
+    assert item.name in REPORT_AT_HOME

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from textual.widgets import Input
+from textual.widgets import Input, Static
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.command_grammar import command_reader
@@ -17,6 +17,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.confirmations import called_meanwhile
 from tangy_tui.text.control import WAITS_FOR_YOU
+from tangy_tui.text.games import REPORT_AFTER_LEAVING, REPORT_AT_HOME
 from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.staff_view import TIME_FIRST
 from tangy_tui.text.staff_view import WAITS_FOR_YOU as TANGY_WAITS
@@ -199,6 +200,45 @@ def test_a_game_left_open_by_the_program_begun_at_home_is_told(
     opening.run_program(workspace, ascii_only=False)  # this time it was not played
     assert told not in capsys.readouterr().out
     workspace.close()
+
+
+@pytest.mark.parametrize("left", ["abandon", "interrupt"])
+def test_the_command_for_the_report_is_told_when_the_program_has_ended(
+    taught: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], left: str
+) -> None:
+    workspace = Workspace(taught)
+    robot = Robot(workspace)
+
+    def plays(program: Program) -> int:
+        robot.control.next()
+        getattr(robot.control, left)()
+        return 0
+
+    monkeypatch.setattr(opening, "outlive_terminal", lambda: None)
+    monkeypatch.setattr(opening, "read_replies", lambda: None)
+    monkeypatch.setattr(opening, "run_app", plays)
+    opening.run_program(workspace, ascii_only=False, report="tangy report --data here")
+    *_, last = capsys.readouterr().out.splitlines()
+    assert last.endswith("tangy report --data here")
+    monkeypatch.setattr(opening, "run_app", lambda program: 0)
+    opening.run_program(workspace, ascii_only=False, report="tangy report --data here")
+    assert "tangy report" not in capsys.readouterr().out  # nothing was played
+    workspace.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("home", [True, False])
+async def test_leaving_a_game_says_where_its_report_is(
+    run: Run, program: Program, *, home: bool
+) -> None:
+    program.leads_home = home
+    async with run(app=program, size=SMALL) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        told = " ".join(str(part.render()) for part in pilot.app.screen.query(Static))
+        assert (REPORT_AT_HOME in told) is home
+        assert (REPORT_AFTER_LEAVING in told) is not home
 
 
 @pytest.mark.slow

@@ -176,7 +176,7 @@ class PlayScreen(PlayStaff):
         self._leaving = True
         going = self.control.going
         self._do(Pause())
-        dialog = ConfirmDialog(text.LEAVE, text.LEAVE_DETAIL, yes="leave", no="go on")
+        dialog = ConfirmDialog(text.LEAVE, self._leave_detail(), yes="leave", no="go on")
         leaves = await self.app.push_screen_wait(dialog)
         self._leaving = False
         if leaves:

@@ -18,7 +18,16 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.text.games import ANSWER_FIRST, NO_UNSEEN_FAULT, NOTHING_DECIDED, SEEN
+from tangy_tui.text.games import (
+    ANSWER_FIRST,
+    LEAVE_DETAIL,
+    NO_UNSEEN_FAULT,
+    NOTHING_DECIDED,
+    REPORT_AFTER_LEAVING,
+    REPORT_AT_END,
+    REPORT_AT_HOME,
+    SEEN,
+)
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.register import staff_names
 from tangy_tui.ui.base import TangyScreen
@@ -151,7 +160,18 @@ class PlayPanels(TangyScreen[Tally]):
         """Return what the view for staff is shown with."""
         name = staff_names(self._workspace.name)
         world = self._supervision.world
-        return ViewSource(world, self.control, self.minutes, name, self.picture.said)
+        report = REPORT_AT_HOME if self._leads_home else REPORT_AT_END
+        return ViewSource(world, self.control, self.minutes, name, self.picture.said, report)
+
+    def _leave_detail(self) -> str:
+        """Tell what happens if staff leave in the middle of a game."""
+        report = REPORT_AT_HOME if self._leads_home else REPORT_AFTER_LEAVING
+        return LEAVE_DETAIL.format(report=report)
+
+    @property
+    def _leads_home(self) -> bool:
+        """Whether the home screen follows when staff leave, and not the end of the program."""
+        return bool(getattr(self.app, "leads_home", True))
 
     def went_back(self) -> bool:
         """Close a message, take the cursor off the steps, or show the next step again.

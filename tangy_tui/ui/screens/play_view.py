@@ -34,6 +34,8 @@ class ViewSource:
     minutes: int
     name: Callable[[str], str]
     said: str = ""
+    report: str = ""
+    """How to get the report of a game that is over."""
 
 
 def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewSource) -> None:
@@ -58,7 +60,7 @@ def next_line(shown: ViewSource) -> str:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
         if not control.supervision.games:
             return text.PAUSED if control.past is not None else ""
-        return f"{text.OVER} {said}".rstrip()
+        return " ".join(filter(None, (text.OVER, shown.report, said)))
     if control.stopped:
         return f"{stopped_words(control.stopped_by)}."
     if control.phase == "asking":
