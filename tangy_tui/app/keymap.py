@@ -105,6 +105,7 @@ ACTIONS: tuple[KeyAction, ...] = (
     KeyAction("rename", ("T",), "rename"),
     KeyAction("world", ("W",), "games"),
     KeyAction("camera", ("V",), "camera"),
+    KeyAction("printed_page", ("X",), "print"),
     # fixed
     _fixed("back", "escape", word="leave"),
     _fixed("open", "enter", word="open"),

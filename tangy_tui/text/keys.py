@@ -80,6 +80,7 @@ NAMES: Mapping[str, ActionName] = MappingProxyType(
         "join": ActionName("Add a person or a guest", "add"),
         "rename": ActionName("Give a person another name", "rename"),
         "world": ActionName("Simulated, bench or live games", "games"),
+        "printed_page": ActionName("Write the report as a page to print (HTML)", "page to print"),
         "camera": ActionName("Show what the camera sees, or hide it", "camera"),
         "back": ActionName("Back", "back"),
         "open": ActionName("Open or choose", "open"),

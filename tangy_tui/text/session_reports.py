@@ -18,7 +18,8 @@ EARLIER, LATER, SCROLL = "earlier", "later", "scroll"
 SCREEN_HELP = (
     "The report of the last session: what to look after, who took part, what was called, what went "
     "wrong, and what staff did. The left arrow goes to an earlier session, the right arrow back. "
-    "Games less than half an hour apart belong to one session."
+    "Games less than half an hour apart belong to one session. {printed_page} writes the report as "
+    "a page to print (HTML) into the data folder, and shows its name."
 )
 
 
@@ -34,9 +35,25 @@ def place_words(at: int, count: int) -> str:
     return "the last session" if not at else f"session {count - at} of {count}"
 
 
-def as_page(games: Sequence[Game], *, last: bool) -> str:
-    """Tell the command that writes the report of a session as a page, "" if there is none."""
+def as_page(games: Sequence[Game], data: str = "", *, last: bool) -> str:
+    """Tell the key and the command that write the report of a session as a page to print.
+
+    Args:
+        games: the games of the session.
+        data: the options that name the data folder.
+        last: whether it is the last session.
+    """
+    key = "To print this report, press {printed_page}: Tangy writes it as a page."
     if not last and len(games) > 1:
-        return ""
+        return key
     which = "" if last else f" {games[0].number}"
-    return f"To print it, type in a terminal: tangy report session{which} --html report.html"
+    return f"{key} Or type in a terminal: tangy report session{which} --html report.html{data}"
+
+
+PRINTED_PAGE = "The report as a page"
+"""The title of the message that tells where the page is."""
+
+
+def printed_page_words(path: str) -> str:
+    """Tell where the page is, and how to print it."""
+    return f"The page is here:\n{path}\nOpen it with a web browser, and print it from there."

@@ -18,6 +18,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.text.games import NONE_YET, REPORT_AT_HOME
 from tangy_tui.text.session_reports import REPORTS, games_title
+from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import CHOICES, HomeScreen
 from tangy_tui.ui.screens.report import ReportScreen
@@ -95,3 +96,17 @@ async def test_the_list_of_all_commands_finds_the_report(run: Run, workspace: Wo
 def test_the_end_of_a_live_game_names_the_way_to_its_report() -> None:
     (item,) = [choice for choice in CHOICES if choice.id == "reports"]
     assert item.name in REPORT_AT_HOME
+
+
+@pytest.mark.slow
+async def test_a_key_writes_the_shown_report_as_a_page_to_print(
+    run: Run, played: Workspace
+) -> None:
+    games = read_games(played.store)
+    async with run(ReportScreen(played, [games])) as pilot:
+        await until_shown(pilot, partial(is_shown, pilot, "X page to print"))
+        await pilot.press("X")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        (page,) = played.store.folder.glob("report-*.html")
+        assert page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+        await until_shown(pilot, partial(is_shown, pilot, page.name))
