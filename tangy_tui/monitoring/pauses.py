@@ -14,20 +14,29 @@ END: tuple[StaffActionKind, ...] = ("went on", "let go on", "took over")
 
 @dataclass(frozen=True, slots=True)
 class PauseTotal:
-    """How often games were paused, and for how many s in all."""
+    """How often games were paused, for how many s in all, and how many of these were STOPs."""
 
     count: int = 0
     seconds: float = 0.0
+    stops: int = 0
 
     @classmethod
     def of(cls, each: Iterable[PauseTotal]) -> PauseTotal:
         """Add up the pauses of several games."""
         found = list(each)
-        return cls(sum(one.count for one in found), sum(one.seconds for one in found))
+        return cls(
+            sum(one.count for one in found),
+            sum(one.seconds for one in found),
+            sum(one.stops for one in found),
+        )
 
     def to_json(self) -> dict[str, float]:
         """Return the totals as `--json` prints them; the time is in s."""
         return {"count": self.count, "seconds": self.seconds}
+
+    def with_stops(self) -> dict[str, float]:
+        """Return the totals as `--json` prints those of staff, with the STOPs among them."""
+        return {**self.to_json(), "stops": self.stops}
 
 
 class PauseClock:
@@ -37,13 +46,15 @@ class PauseClock:
         """Begin with a game that is going."""
         self._since: float | None = None
         self._by: Literal["staff", "resume"] = "staff"
-        self._count, self._seconds = 0, 0.0
+        self._stopped = False
+        self._total = PauseTotal()
 
     def did(self, did: StaffActionKind, at: float) -> None:
         """Add an action of staff at a time in s."""
         if did in BEGIN:
             self._by = "staff"
-            self._since = at if self._since is None else self._since
+            if self._since is None:
+                self._since, self._stopped = at, did == "stopped"
         elif did in END:
             self._end(at)
 
@@ -63,10 +74,10 @@ class PauseClock:
     def total(self, over: float) -> PauseTotal:
         """Return the pauses of a game that is over at a time in s."""
         self._end(over)
-        return PauseTotal(self._count, self._seconds)
+        return self._total
 
     def _end(self, at: float) -> None:
         if self._since is not None and at > self._since:  # not a stop that ends the game
-            self._count += 1
-            self._seconds += at - self._since
-        self._since, self._by = None, "staff"
+            ended = PauseTotal(1, at - self._since, int(self._stopped))
+            self._total = PauseTotal.of((self._total, ended))
+        self._since, self._by, self._stopped = None, "staff", False

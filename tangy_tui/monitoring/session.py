@@ -162,7 +162,7 @@ class Session:
         return {
             "title": self.title,
             "seconds": self.seconds if self.timed else None,
-            "staff_pauses": self.staff_pauses.to_json(),
+            "staff_pauses": self.staff_pauses.with_stops(),
             "halts": self.halts.to_json(),
             "answer_waits": self.answer_waits.to_json(),
             "interruptions": self.interruptions.to_json(),
@@ -170,7 +170,7 @@ class Session:
                 {
                     **r.game.to_json(),
                     "seconds": r.seconds if r.timed else None,
-                    "staff_pauses": r.staff_pauses.to_json(),
+                    "staff_pauses": r.staff_pauses.with_stops(),
                     "halts": halts(r).to_json(),
                     "answer_waits": answer_waits(r).to_json(),
                     "interruptions": interruptions(r).to_json(),

@@ -63,9 +63,7 @@ def how_long_words(session: Session) -> str:
     pauses, halts, breaks = session.staff_pauses, session.halts, session.interruptions
     asked = session.answer_waits
     part = [
-        f"{length(pauses.seconds)} in {counted(pauses.count, 'pause')}"
-        if pauses.seconds >= 1
-        else "",
+        f"{length(pauses.seconds)} in {_pauses_words(pauses)}" if pauses.seconds >= 1 else "",
         f"{length(halts.seconds)} in which a fault stopped Tangy" if halts.seconds >= 1 else "",
         f"{length(asked.seconds)} in which Tangy waited for an answer of staff"
         if asked.seconds >= 1
@@ -74,6 +72,13 @@ def how_long_words(session: Session) -> str:
     words = listed(filter(None, part))
     told = f"{length(session.seconds)}{f', of which {words}' if words else ''}"
     return f"{told}{_interrupted_words(breaks)}"
+
+
+def _pauses_words(pauses: PauseTotal) -> str:
+    """Count the pauses, and the times that people stopped the robot."""
+    paused, stops = pauses.count - pauses.stops, pauses.stops
+    words = [counted(paused, "pause") if paused else "", counted(stops, "STOP") if stops else ""]
+    return listed(filter(None, words))
 
 
 def _interrupted_words(breaks: PauseTotal) -> str:

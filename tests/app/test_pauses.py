@@ -49,7 +49,7 @@ def test_screen_log_and_report_tell_the_same_times_of_a_paused_game(workspace: W
     played = before.control.view().seconds
     assert before.control.view().paused is None and played > 200
     game = reported(workspace)
-    assert astuple(game.staff_pauses) == pytest.approx((1, 200.0))
+    assert astuple(game.staff_pauses) == pytest.approx((1, 200.0, 0))
     assert game.seconds == pytest.approx(played)
     assert interrupted(workspace).seconds == pytest.approx(played)
 
@@ -76,7 +76,7 @@ def test_the_time_between_a_crash_and_the_resume_is_in_no_clock(workspace: Works
     assert interrupted(workspace).seconds == pytest.approx(ended)
     game = reported(workspace)
     assert game.seconds == pytest.approx(ended)
-    assert astuple(game.staff_pauses) == pytest.approx((2, 250.0))
+    assert astuple(game.staff_pauses) == pytest.approx((2, 250.0, 0))
 
 
 def test_a_stop_and_single_steps_count_as_pauses(workspace: Workspace) -> None:
@@ -85,14 +85,14 @@ def test_a_stop_and_single_steps_count_as_pauses(workspace: Workspace) -> None:
     robot.control.apply(StopRobot())
     robot.link.time += 30.0
     robot.control.apply(GoOn())
-    assert astuple(reported(workspace).staff_pauses) == pytest.approx((1, 30.0))
+    assert astuple(reported(workspace).staff_pauses) == pytest.approx((1, 30.0, 1))
     robot.control.apply(OneStep())
     robot.link.time += 20.0
     robot.control.apply(Pause())
     robot.link.time += 5.0
     assert robot.control.view().paused == pytest.approx(25.0)
     robot.control.apply(GoOn())
-    assert astuple(reported(workspace).staff_pauses) == pytest.approx((2, 55.0))
+    assert astuple(reported(workspace).staff_pauses) == pytest.approx((2, 55.0, 1))
 
 
 def test_a_pause_that_the_log_does_not_end_lasts_until_the_next_step_after_a_resume() -> None:

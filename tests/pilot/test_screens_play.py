@@ -396,6 +396,7 @@ async def test_leaving_during_a_game_asks_and_is_logged(
         assert isinstance(pilot.app.screen, PlayScreen)
         assert pilot.app.screen.query_one(StatusLine).status.note == "x1"
         assert workspace.store.last("game ended") is None
+        assert workspace.store.last("staff action") is None  # the question is no pause
         await pilot.press("escape")
         await pilot.pause()
         await pilot.press("y")

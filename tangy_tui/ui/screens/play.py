@@ -172,23 +172,20 @@ class PlayScreen(PlayStaff):
             self.run_worker(self._leave(), name="leave")
 
     async def _leave(self) -> None:
-        """Ask whether to leave in mid-game, with the game paused."""
+        """Ask whether to leave in mid-game; the game waits, which is no pause of staff."""
         self._leaving = True
-        going = self.control.going
-        self._do(Pause())
         dialog = ConfirmDialog(text.LEAVE, self._leave_detail(), yes="leave", no="go on")
-        leaves = await self.app.push_screen_wait(dialog)
-        self._leaving = False
-        if leaves:
-            self._ended = True
-            self.control.note("ended")
-            self.control.end_joined(ENDED)
-            await self._come_to_rest()
-            if not self._supervision.over:
-                self.tally.add(self.control.abandon())
-            self.leave(self.tally)
-        elif going and not self.control.stopped and not self._halted:
-            self._do(GoOn())
+        with self.control.holding():
+            leaves = await self.app.push_screen_wait(dialog)
+            self._leaving = False
+            if leaves:
+                self._ended = True
+                self.control.note("ended")
+                self.control.end_joined(ENDED)
+                await self._come_to_rest()
+                if not self._supervision.over:
+                    self.tally.add(self.control.abandon())
+                self.leave(self.tally)
 
     async def _come_to_rest(self) -> None:
         """Let the current behaviour end first."""
