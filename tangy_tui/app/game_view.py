@@ -57,40 +57,49 @@ class GameView:
     """The share of the robot's charge, 0 to 1, rounded; null: no device tells it."""
 
 
+TRIES = 5
+"""How often a game that is changing is looked at, before there is no snapshot of it."""
+
+
 def view_of(control: GameController) -> GameView | None:
-    """Return a snapshot of a controller's game; None if there is none yet or it is changing."""
+    """Return a snapshot of a controller's game; None if there is none yet, or it changes on."""
+    for _ in range(TRIES):
+        with suppress(RuntimeError, LookupError):  # the game's thread changed it meanwhile
+            return _view_now(control)
+    return None
+
+
+def _view_now(control: GameController) -> GameView | None:
     supervision = control.supervision
     world = supervision.world
     link = getattr(world, "link", None)
-    with suppress(RuntimeError, LookupError):  # the game's thread changed it meanwhile
-        if not supervision.games:
-            return None
-        robot, cause = supervision.status
-        pose = link.state.pose if link is not None and link.state.number else None
-        seen = control.view()
-        return GameView(
-            driver=control.by,
-            game=supervision.game.game,
-            activity=world.activity.name,
-            world=world.played_in,
-            number=supervision.game.log.number(supervision.game.game),
-            step=supervision.steps,
-            phase=control.phase,
-            robot=robot,
-            cause=cause,
-            scene=world.scene(),
-            pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
-            room=supervision.game.room,
-            seconds=int(seen.seconds),
-            paused=None if seen.paused is None else int(seen.paused),
-            minutes=supervision.game.changes.plan.minutes,
-            people=tuple(_in_whole_seconds(person) for person in seen.people),
-            autonomy=control.autonomy.level,
-            pace=seen.pace,
-            patterns=_patterns(world),
-            battery=None if (charge := battery_of(world)) is None else round(charge, 2),
-        )
-    return None
+    if not supervision.games:
+        return None
+    robot, cause = supervision.status
+    pose = link.state.pose if link is not None and link.state.number else None
+    seen = control.view()
+    return GameView(
+        driver=control.by,
+        game=supervision.game.game,
+        activity=world.activity.name,
+        world=world.played_in,
+        number=supervision.game.log.number(supervision.game.game),
+        step=supervision.steps,
+        phase=control.phase,
+        robot=robot,
+        cause=cause,
+        scene=world.scene(),
+        pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
+        room=supervision.game.room,
+        seconds=int(seen.seconds),
+        paused=None if seen.paused is None else int(seen.paused),
+        minutes=supervision.game.changes.plan.minutes,
+        people=tuple(_in_whole_seconds(person) for person in seen.people),
+        autonomy=control.autonomy.level,
+        pace=seen.pace,
+        patterns=_patterns(world),
+        battery=None if (charge := battery_of(world)) is None else round(charge, 2),
+    )
 
 
 def _patterns(world: object) -> tuple[str, ...]:

@@ -117,6 +117,17 @@ class GamePlanControls:
             return claim
         return replace(claim, card=self.world.known_cards.get(claim.person, 0))
 
+    def may_hold(self, claim: ClaimCard) -> tuple[str, ...]:
+        """Return the people who may have the card of a claim, if nobody knows whose it is."""
+        world = self.world
+        unclear = world is not None and not self._idle and claim.card and not claim.person
+        if world is None or not unclear or world.holder(claim.card):
+            return ()
+        if world.numbers_on(claim.card) is None:
+            return ()
+        known = world.known_cards
+        return tuple(one for one in world.people if one not in world.away and one not in known)
+
     def _no_card(self, claim: ClaimCard) -> StaffNote | None:
         """Return why a claim cannot be checked: there is no such card, or nobody here has it."""
         card, person = claim.card, claim.person
@@ -125,7 +136,8 @@ class GamePlanControls:
         if person and not card:
             return StaffNote("which card", person)
         known = world.known_cards
-        cards = ", ".join(map(str, sorted(known.values())))
+        here = {card for person, card in known.items() if person not in world.away}
+        cards = ", ".join(map(str, sorted(here)))
         if world.numbers_on(card) is None:
             return StaffNote("no such card", str(card), cards)
         everybody = set(world.people) - world.away <= set(known)

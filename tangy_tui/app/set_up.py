@@ -53,12 +53,18 @@ class SetUp(Readiness):
     """The choices that the last change of activity could not keep."""
     _order: list[str] = field(default_factory=list)  # of seats, also of people who do not play now
     _moved: bool = False  # whether people changed seats
+    _pace_given: bool = False
     _away: set[str] = field(default_factory=set)  # people who do not play now
 
     @classmethod
-    def of(cls, workspace: Workspace, pace: float = USUAL_PACE) -> SetUp:
-        """Start with everybody present, in their last seats; `pace` is in s from call to call."""
-        set_up = cls(workspace, pace=pace, on_duty=on_duty(workspace.store.folder))
+    def of(cls, workspace: Workspace, pace: float | None = None) -> SetUp:
+        """Start with everybody present, in their last seats.
+
+        `pace` is in s from call to call; None: the usual one, or that of the last game.
+        """
+        set_up = cls(workspace, on_duty=on_duty(workspace.store.folder))
+        if pace is not None:
+            set_up.pace, set_up._pace_given = pace, True
         set_up._seat_as_before()
         return set_up
 
@@ -73,7 +79,7 @@ class SetUp(Readiness):
         self.several, self.visits, self.minutes = last.several, last.visits, last.minutes
         if last.strength in (one.name for one in rules.strengths):
             self.strength = last.strength
-        if last.pace and self.pace == USUAL_PACE:
+        if last.pace and not self._pace_given:
             self.pace = last.pace
         self.away = {person for person in last.absent if person in self.seats}
 

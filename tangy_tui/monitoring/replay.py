@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
@@ -150,6 +151,8 @@ class GameReplay:
     unasked: set[tuple[int, str]] = field(default_factory=set)
     """Step and person of visits without a request."""
     staff_pauses: PauseTotal = field(default_factory=PauseTotal)
+    set_ups: PauseTotal = field(default_factory=PauseTotal)
+    """How often, and for how many s in all, the robot was set up for people who joined."""
     """When staff paused the game or stopped the robot."""
     staff_changes: list[Moment] = field(default_factory=list)
     """The changes that `moments` tell as actions of staff, or not at all."""
@@ -259,7 +262,7 @@ def _replay(
     new = {change.person for change in _changes(events) if change.what == "joined"}
     pauses = PauseClock()
     stopped = False  # the robot, by people
-    lets_in = False  # staff let a person in, for whom the game is resumed at once
+    lets_in = ""  # when staff let a person in, for whom the game is resumed at once
     for event in events:
         what: What
         match event.record:
@@ -287,14 +290,17 @@ def _replay(
                 replay.staff_changes.append(Moment(at, step, event.at, what))
                 continue
             case GameResumed() if lets_in:
-                lets_in = False
+                since = datetime.fromisoformat(event.at) - datetime.fromisoformat(lets_in)
+                set_up = PauseTotal(1, max(0.0, since.total_seconds()))
+                replay.set_ups = PauseTotal.of((replay.set_ups, set_up))
+                lets_in = ""
                 continue
             case GameResumed(by=by):
                 what = Noted("resumed", by)
                 pauses.resumed(max(acted, replay.seconds))
             case StaffAction() as action:
                 if action.did == "came" and action.person in new:
-                    lets_in = True
+                    lets_in = lets_in or event.at
                     new -= {action.person}
                 if action.did in ("stopped", "let go on"):
                     stopped = action.did == "stopped"

@@ -137,6 +137,11 @@ class Session:
         return PauseTotal.of(map(answer_waits, self.replays))
 
     @property
+    def set_ups(self) -> PauseTotal:
+        """When the robot was set up for people who joined a game, in all."""
+        return PauseTotal.of(replay.set_ups for replay in self.replays)
+
+    @property
     def interruptions(self) -> PauseTotal:
         """When games were interrupted and resumed, in all; not part of `seconds`."""
         return PauseTotal.of(map(interruptions, self.replays))
@@ -165,6 +170,7 @@ class Session:
             "staff_pauses": self.staff_pauses.with_stops(),
             "halts": self.halts.to_json(),
             "answer_waits": self.answer_waits.to_json(),
+            "set_ups": self.set_ups.to_json(),
             "interruptions": self.interruptions.to_json(),
             "games": [
                 {
@@ -173,6 +179,7 @@ class Session:
                     "staff_pauses": r.staff_pauses.with_stops(),
                     "halts": halts(r).to_json(),
                     "answer_waits": answer_waits(r).to_json(),
+                    "set_ups": r.set_ups.to_json(),
                     "interruptions": interruptions(r).to_json(),
                     "played_for": [one.to_json() for one in played_for(r)],
                 }

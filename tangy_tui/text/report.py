@@ -58,16 +58,24 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
+SET_UP = "in which Tangy set itself up for somebody new"
+MOST_NAMED = 5
+"""The most people that one line of what to look after names, if there are more."""
+LEAST_LEFT = 3
+"""So many people are counted instead of named; fewer are named."""
+
+
 def how_long_words(session: Session) -> str:
     """Tell how long the games lasted, were paused, halted by faults, and interrupted."""
     pauses, halts, breaks = session.staff_pauses, session.halts, session.interruptions
-    asked = session.answer_waits
+    asked, set_ups = session.answer_waits, session.set_ups
     part = [
         f"{length(pauses.seconds)} in {_pauses_words(pauses)}" if pauses.seconds >= 1 else "",
         f"{length(halts.seconds)} in which a fault stopped Tangy" if halts.seconds >= 1 else "",
         f"{length(asked.seconds)} in which Tangy waited for an answer of staff"
         if asked.seconds >= 1
         else "",
+        f"{length(set_ups.seconds)} {SET_UP}" if set_ups.seconds >= 1 else "",
     ]
     words = listed(filter(None, part))
     told = f"{length(session.seconds)}{f', of which {words}' if words else ''}"
@@ -199,7 +207,7 @@ def care_lines(
     if never := [name(one.id) for one in people if one.never_visited]:
         goes, stays = visiting(replays)
         where = f" in {listed(goes)} (in {listed(stays)} it goes to nobody)" if stays else ""
-        lines.append(f"Tangy never went to {listed(never)}{where}.")
+        lines.append(f"Tangy never went to {some_of(never)}{where}.")
     waiting, waited = dict[str, list[str]](), dict[str, list[str]]()
     for one in sorted(people, key=lambda one: -max(one.open or one.waits, default=0.0)):
         if one.open:
@@ -208,9 +216,26 @@ def care_lines(
             waited.setdefault(length(max(one.waits)), []).append(name(one.id))
     for what, groups in (("Still waiting at the end", waiting), ("Waited long for help", waited)):
         if groups:
-            each = "; ".join(f"{listed(names)} ({wait})" for wait, names in groups.items())
-            lines.append(f"{what}: {each}.")
+            lines.append(f"{what}: {_waits_words(groups)}.")
     return lines
+
+
+def some_of(names: Sequence[str]) -> str:
+    """Name a few people, and count the others: a report names all of them further below."""
+    left = len(names) - MOST_NAMED
+    return listed(names if left < LEAST_LEFT else [*names[:MOST_NAMED], counted(left, "other")])
+
+
+def _waits_words(groups: Mapping[str, Sequence[str]]) -> str:
+    """Tell who waited how long, the longest waits first, and count the others if they are many."""
+    each, left = list[str](), sum(map(len, groups.values()))
+    most = left if left < MOST_NAMED + LEAST_LEFT else MOST_NAMED
+    for wait, names in groups.items():
+        if most > 0:
+            each.append(f"{listed(names[:most])}, {wait}")
+            left -= len(names[:most])
+            most -= len(names)
+    return "; ".join([*each, *([counted(left, "other")] if left else [])])
 
 
 def quiet_words(names: Sequence[str]) -> str:
@@ -227,6 +252,9 @@ def attention_lines(
     where = visiting_words(replays)
     if asked:
         lines += ["Asked for help:", *asked, *([f"  {where}"] if where else [])]
+    never = [name(one.id) for one in people if one.never_visited]
+    if len(never) >= MOST_NAMED + LEAST_LEFT:  # the line of what to look after names a few
+        lines.append(f"Never visited: {', '.join(never)}.")
     return lines
 
 

@@ -78,6 +78,16 @@ def dropped_words(dropped: Sequence[Choice]) -> str:
     return f"Not kept, as this activity has other choices: {lost}."
 
 
+NOT_READY = "NOT READY"
+"""The state of a robot that is on, with a device that is not well."""
+BEGIN_HOW = "{begin} begins the game: hold Shift and press b."
+
+
+def robot_words(check: Check) -> str:
+    """Tell the state of the robot for the status line, from its check."""
+    return {"off": "OFF", "not ready": NOT_READY}.get(check.state, "OK")
+
+
 def people_words(setup: SetUp) -> str:
     """Tell how many people are here."""
     return f"{len(setup.seats) - len(setup.away)} of {len(setup.seats)} are here"

@@ -16,6 +16,13 @@ AWAY = "away"
 IS_HERE, IS_AWAY = "here: Enter if they leave", "not here: Enter if they have come"
 SOMEBODY_NEW = "somebody new", "Enter, and type the name"
 
+NOBODY_KNOWS = "nobody", "I do not know", "Tangy checks the card all the same"
+
+
+def whose_words(card: int) -> str:
+    """Ask whose card is to be checked."""
+    return f"Whose card is {card}?"
+
 
 def example_words(rules: GameRules) -> str:
     """Give examples of commands, and name the key that explains what Tangy does."""

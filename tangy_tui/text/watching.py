@@ -44,7 +44,7 @@ ONLOOKER = "a colleague"
 
 READ_ONLY = "You are watching. Your keys do not change the game; only STOP stops the robot."
 NOBODY = "No Tangy runs here. This screen shows a game as soon as one begins."
-NO_GAME = "Tangy is open here, but no game has begun yet."
+NO_GAME = "Tangy is open here, and shows no game now."
 GONE = "The program that ran the game has ended."
 CLOSED = "That Tangy was closed."
 """The same, if it had no game."""

@@ -9,7 +9,6 @@ from textual.constants import ESCAPE_DELAY
 
 from tangy_profiles import game_world
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_rules import USUAL_PACE
 from tangy_tui.text.live_games import (
     GAME_KEPT,
     KEEPS_IF_OFF,
@@ -66,13 +65,13 @@ async def play_live(
     teacher: str,
     past: PastGame | None = None,
     set_up: bool = False,
-    pace: float = USUAL_PACE,
+    pace: float | None = None,
 ) -> None:
     """Switch the robot on, play on the live screen, and switch it off again.
 
     It stays off if the user cancels. A past game, which was interrupted, is resumed first. With
     `set_up`, staff set the game up first and decide when to switch the robot on. The `pace` is in s
-    from call to call.
+    from call to call; None: the usual one, or that of the last game.
     """
     from tangy_tui.app.joining import resume_joined
     from tangy_tui.app.robot_opening import at_front

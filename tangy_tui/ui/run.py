@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.game_rules import USUAL_PACE
 from tangy_profiles.game_world import PLAYED_WORLDS, SIMULATED
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
@@ -147,7 +146,7 @@ def run_live(
     ears: SpeechInput | None = None,
     past: PastGame | None = None,
     set_up: bool = True,
-    pace: float = USUAL_PACE,
+    pace: float | None = None,
 ) -> int:
     """Set up, play on the live screen with the robot on, and end; return the exit status.
 
@@ -164,7 +163,8 @@ def run_live(
         ears: the recogniser for stops and answers.
         past: an interrupted game to resume first; None: ask about one if there is any.
         set_up: let staff set a new game up first.
-        pace: s from one call to the next, unless staff choose another.
+        pace: s from one call to the next, unless staff choose another; None: the usual one, or that
+            of the last game.
     """
 
     async def start(program: Program) -> None:

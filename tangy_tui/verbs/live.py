@@ -83,8 +83,14 @@ def live(
     ] = "",
     expert: Expert = "",
     pace: Annotated[
-        float, typer.Option(min=1, max=300, help="Seconds from one call to the next.")
-    ] = PACE,
+        float | None,
+        typer.Option(
+            min=1,
+            max=300,
+            show_default=False,
+            help="Seconds from one call to the next. Default: as in your last game, or 30.",
+        ),
+    ] = None,
     map_: Annotated[
         str,
         typer.Option(
@@ -196,7 +202,7 @@ def live(
         }  # fmt: skip
 
         def opening(seed: int) -> WorldOpening:
-            both: dict[str, Any] = {"seed": seed, "pace": pace, "map_": map_, "lost": lost}
+            both: dict[str, Any] = {"seed": seed, "pace": pace or PACE, "map_": map_, "lost": lost}
             both |= {"injections": faults, "link": link}
             return opening_of(workspace, bench=bench, own=own, **both)
 
@@ -308,7 +314,7 @@ def live(
             raise typer.Exit(1)  # so that a script knows that games stopped early
 
 
-def _set_up(workspace: Workspace, pace: float) -> SetUpLines | None:
+def _set_up(workspace: Workspace, pace: float | None) -> SetUpLines | None:
     """Return the set-up in the console, None if nobody types."""
     from tangy_tui.app.set_up import SetUp
     from tangy_tui.console.inputs import is_typed, line_reader

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from pathlib import Path
 from typing import cast
 
@@ -10,7 +11,7 @@ import pytest
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.game_records import GameChange, GameEnding
+from tangy_profiles.game_records import GameChange, GameEnding, GameResumed
 from tangy_profiles.game_world import LIVE
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.robot import load_robot
@@ -38,6 +39,7 @@ from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.log_check import log_problems
+from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.control import noted_words
@@ -397,6 +399,11 @@ def test_the_clock_goes_on_while_tangy_is_set_up_for_a_person(
     (replay,) = read_session(workspace.store, read_games(workspace.store), {}, {}).replays
     assert replay.seconds == pytest.approx(after.control.view().seconds)
     assert replay.staff_pauses.count == 0  # nobody paused the game
+    staff = workspace.store.events(StaffAction)
+    (came,) = (one.at for one in staff if one.record.did == "came")
+    (resumed,) = (one.at for one in workspace.store.events(GameResumed))
+    took = datetime.fromisoformat(resumed) - datetime.fromisoformat(came)
+    assert replay.set_ups == PauseTotal(1, took.total_seconds())
     workspace.close()
 
 

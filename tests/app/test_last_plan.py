@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.game_rules import GamePlan
+from tangy_profiles.game_rules import USUAL_PACE, GamePlan
 from tangy_tui.app.game_commands import ComesIn, GoesAway, GoOn, SetPace
 from tangy_tui.app.last_plan import last_plan
 from tangy_tui.app.set_up import SetUp
@@ -45,6 +45,9 @@ def test_the_set_up_offers_the_last_plan_with_its_changes(workspace: Workspace) 
     given = SetUp.of(workspace, 45.0)  # on the command line
     given.offer_last_plan()
     assert given.pace == 45.0
+    usual = SetUp.of(workspace, USUAL_PACE)  # on the command line as well
+    usual.offer_last_plan()
+    assert usual.pace == USUAL_PACE
 
 
 def test_who_was_away_on_another_day_is_expected_again(workspace: Workspace) -> None:

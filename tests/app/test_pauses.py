@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.past_game import PastGame, interrupted_game
+from tangy_profiles.scene import Scene
 from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StopRobot
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.workspace import Workspace
@@ -107,6 +108,23 @@ def test_a_pause_lasts_until_the_end_of_the_game() -> None:
     pauses.did("paused", 10.0)
     pauses.did("stopped", 20.0)
     assert pauses.total(40.0) == PauseTotal(1, 30.0)
+
+
+def test_onlookers_see_a_game_that_was_changing_as_they_looked(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = Robot(workspace)
+    robot.next(1)
+    looks = iter([RuntimeError("changed during iteration"), LookupError()])
+    scene = robot.world.scene
+
+    def changing() -> Scene:
+        if (error := next(looks, None)) is not None:
+            raise error
+        return scene()
+
+    monkeypatch.setattr(robot.world, "scene", changing)
+    assert view_of(robot.control) is not None
 
 
 def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> None:

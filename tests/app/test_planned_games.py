@@ -136,6 +136,30 @@ def test_a_claim_is_checked_against_the_called_numbers(planned: Planned) -> None
     assert planned.celebrated()[-1] == "user3"
 
 
+def test_cards_in_play_are_those_of_people_who_are_here(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=3)
+    planned.do(GoesAway("user2"))
+    (note,) = planned.control.apply(ClaimCard(99))
+    assert isinstance(note, StaffNote) and note.words == "1, 3, 4"
+
+
+def test_those_who_may_hold_a_card_are_here_and_have_none(
+    planned: Planned, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=3)
+    planned.do(GoesAway("user2"))
+    assert planned.control.plan.may_hold(ClaimCard(3)) == ()  # it is known whose it is
+    on = {3: planned.world.numbers_on(3)}.get  # as on the robot, which has to learn cards
+    monkeypatch.setattr(SimulatedWorld, "numbers_on", lambda world, card: on(card))
+    monkeypatch.setattr(SimulatedWorld, "known_cards", {"user1": 1})
+    monkeypatch.setattr(SimulatedWorld, "holder", lambda world, card: "")
+    assert planned.control.plan.may_hold(ClaimCard(3)) == ("user3", "user4")
+    assert planned.control.plan.may_hold(ClaimCard(3, "user3")) == ()
+    assert planned.control.plan.may_hold(ClaimCard(99)) == ()
+
+
 @pytest.mark.parametrize("plan", [(), ("line",)])
 def test_the_pattern_being_played_does_not_follow_itself(
     planned: Planned, plan: tuple[str, ...]

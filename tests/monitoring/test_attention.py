@@ -137,9 +137,20 @@ def test_the_summary_lists_waits_longest_first() -> None:
     ]
     assert care_lines([bob, ann, cy], str) == [
         "Tangy never went to Bob.",
-        "Still waiting at the end: Cy (2 min); Bob (1 min).",
-        "Waited long for help: Ann (7 min).",
+        "Still waiting at the end: Cy, 2 min; Bob, 1 min.",
+        "Waited long for help: Ann, 7 min.",
     ]
+
+
+def test_what_to_look_after_names_a_few_of_many_people_and_counts_the_others() -> None:
+    never = [Attention(f"N{n}") for n in range(19)]
+    waiting = [Attention(f"W{n}", open=[600.0 - 60 * (n // 2)], visits=1) for n in range(9)]
+    first, second = care_lines([*never, *waiting], str)
+    assert first == "Tangy never went to N0, N1, N2, N3, N4 and 14 others."
+    assert second == (
+        "Still waiting at the end: W0 and W1, 10 min; W2 and W3, 9 min; W4, 8 min; 4 others."
+    )
+    assert attention_lines(never, str) == [f"Never visited: {', '.join(one.id for one in never)}."]
 
 
 def test_a_request_closed_from_the_front_is_no_visit() -> None:

@@ -15,13 +15,14 @@ from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.health import OK, Reading
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import GoOn
+from tangy_tui.app.game_commands import EndGame, GoOn
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.text.live_games import LOOKS_ROUND
 from tangy_tui.text.tablet import screen_words
+from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
@@ -117,10 +118,39 @@ async def test_a_waiting_command_is_reported_at_once_and_with_its_result(
         try:
             await until_shown(pilot, lambda: live(pilot).working > 0)
             await pilot.press("colon", *"bingo 2", "enter")
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+            await pilot.press(*"not know", "enter")
             await until_shown(pilot, lambda: "then checks card 2." in screen_text(pilot.app))
         finally:
             link.free = True
         await until_shown(pilot, lambda: "Card 2 does not win" in screen_text(pilot.app))
+
+
+@pytest.mark.slow
+async def test_a_claim_asks_whose_card_it_is_if_nobody_knows(
+    run: Run, program: Program, link: HeldLink, workspace: Workspace
+) -> None:
+    async with run(app=program, size=(80, 24), notifications=True) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
+        await pilot.press("colon", *"bingo 2", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press(*workspace.name("user3"), "enter")
+        await until_shown(pilot, lambda: bool(workspace.store.last("staff action")))
+        claim = workspace.store.last("staff action")
+        assert claim is not None and isinstance(claim.record, StaffAction)
+        assert (claim.record.person, claim.record.detail) == ("user3", "2")
+
+
+@pytest.mark.slow
+async def test_a_claim_after_the_end_of_a_game_is_answered(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(80, 24), notifications=True) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
+        live(pilot).control.apply(EndGame())
+        await until_shown(pilot, lambda: live(pilot).at_rest)
+        await pilot.press("colon", *"bingo 2", "enter")
+        await until_shown(pilot, lambda: "There is no game now." in screen_text(pilot.app))
 
 
 async def test_repeated_pace_keys_log_one_sentence(

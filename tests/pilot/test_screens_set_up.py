@@ -17,6 +17,7 @@ from tangy_profiles.health import OK, STALE
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text import set_up as text
+from tangy_tui.text.set_up import NOT_READY
 from tangy_tui.text.staff_view import said_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.choose import ChooseDialog
@@ -28,6 +29,7 @@ from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpList
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
+from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.pilot.conftest import LARGE, Run, StillClock
 from tests.pilot.live_games import HeldLink, live_world
 from tests.support.waiting import until_shown
@@ -358,3 +360,30 @@ def test_a_qr_code_is_square_with_a_light_margin() -> None:
     lines = qr_lines("http://192.168.1.20:8000/")
     assert len({len(line) for line in lines}) == 1 and lines[0] == "█" * len(lines[0])
     assert abs(len(lines[0]) - 2 * len(lines)) <= 1
+
+
+async def test_a_small_b_tells_how_to_begin(run: Run, setting: Setting) -> None:
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        await pilot.press("b")
+        title = str(pilot.app.screen.query_one(SetUpList).border_title)
+        assert "Shift" in title and setting.begins == []
+        assert setting.setup.world is None
+
+
+async def test_the_status_warns_of_a_robot_that_is_not_well_and_of_nothing_else(
+    run: Run, setting: Setting
+) -> None:
+    async with run(app=setting.program()) as pilot:
+        await opened(pilot)
+        page = pilot.app.screen
+        assert isinstance(page, SetUpScreen)
+        setting.setup.world = await setting.switch_on()
+        setting.setup.said = True  # and nobody has heard it: the sound is not ready
+        page._show()
+        status = page.query_one(StatusLine).status
+        assert setting.setup.not_ready and (status.robot, status.alarm) == ("OK", False)
+        setting.link.ail("laser", "ERROR")
+        page._show()
+        status = page.query_one(StatusLine).status
+        assert (status.robot, status.alarm) == (NOT_READY, True)

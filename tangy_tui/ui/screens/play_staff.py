@@ -20,6 +20,7 @@ from tangy_tui.app.game_commands import (
     Accept,
     CallAgain,
     ChangePace,
+    ClaimCard,
     ComesIn,
     Confirm,
     GameCommand,
@@ -48,11 +49,13 @@ from tangy_tui.text.typed_commands import (
     CLAIM,
     IS_AWAY,
     IS_HERE,
+    NOBODY_KNOWS,
     SOMEBODY_NEW,
     TITLE,
     WHO_IS_HERE,
     claim_words,
     example_words,
+    whose_words,
 )
 from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.base import perform
@@ -66,7 +69,7 @@ from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted
 
 PACE_SECONDS = 1.0
 """The delay after the last change of pace before the new pace is shown."""
-SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
+SEEN_ANYWAY = ("paused", "goes on", "one step")
 """Notes that the key line and the status line show anyway."""
 
 
@@ -290,8 +293,17 @@ class PlayStaff(PlayPanels):
     def _do_typed(self, command: GameCommand) -> None:
         if isinstance(command, GoOn) and not self.control.going:
             self.action_pause()
+        elif isinstance(command, ClaimCard) and (people := self.control.plan.may_hold(command)):
+            self.run_worker(self._ask_whose(command, people), name="whose", group="type")
         else:
             self.do_sure(command)
+
+    async def _ask_whose(self, claim: ClaimCard, people: Sequence[str]) -> None:
+        """Ask whose card is to be checked, as nobody knows it; Esc checks nothing."""
+        options = [Option(person, self._workspace.name(person)) for person in people]
+        dialog = ChooseDialog(whose_words(claim.card), [*options, Option(*NOBODY_KNOWS)])
+        if (person := await self.app.push_screen_wait(dialog)) is not None:
+            self.do_sure(claim if person == NOBODY_KNOWS[0] else replace(claim, person=person))
 
     def _refused(self) -> bool:
         """Return whether a STOP or a question has to be handled first, and tell so."""

@@ -20,6 +20,7 @@ from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.rooms import KnownRoom
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.text import set_up as text
+from tangy_tui.text.keys import with_keys
 from tangy_tui.text.program import NOT_POSSIBLE, NOTHING_MOVES
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.rooms import CHOOSE_ROOM, OTHER_ROOM, places_words
@@ -30,7 +31,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.tablet import TabletDialog
 from tangy_tui.ui.joining import ask_new_name, ask_who_is_on_duty, ask_who_joins
-from tangy_tui.ui.keys import bind
+from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import WIDE, KeyLine, panel
 from tangy_tui.ui.screens.set_up_lines import check_lines, game_lines, people_lines
@@ -64,6 +65,7 @@ class SetUpScreen(TangyScreen[bool]):
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("begin"),
+        Binding("b", "begin_how", show=False),
         *bind("join"),
         *bind("rename"),
         *(
@@ -151,16 +153,16 @@ class SetUpScreen(TangyScreen[bool]):
 
     def _show(self) -> None:
         setup = self.setup
-        robot = "off" if setup.world is None else "on"
+        robot = text.robot_words(setup.check(CHECKS[0]))
         self.query_one(StatusLine).show(
             Status(
                 mode="set up",
-                robot=robot.upper() if setup.world is None else "OK",
+                robot=robot,
                 stage="",
                 game=None,
                 step=None,
                 note=text.people_words(setup),
-                alarm=bool(setup.not_ready),
+                alarm=robot == text.NOT_READY,
             )
         )
         lines = self.query_one(SetUpList)
@@ -349,6 +351,10 @@ class SetUpScreen(TangyScreen[bool]):
         """Begin the game; if checks have failed, ask first."""
         if not self._busy:
             self.run_worker(self._begin(), name="begin", group="check")
+
+    def action_begin_how(self) -> None:
+        """Tell that a capital letter begins the game, so that no slip does."""
+        self._say(with_keys(text.BEGIN_HOW, keymap_of(self.app)))
 
     async def _begin(self) -> None:
         self._stopped = False

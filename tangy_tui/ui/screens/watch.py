@@ -38,6 +38,8 @@ from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
+LOOKS_WITHOUT = 3
+"""After so many looks without a game there is none: it may be changing at that moment."""
 ALARMS = ("stopped", "halted")
 OF_THE_GAME = (
     *("pause", "step", "faster", "slower", "autonomy", "take_over", "drive", "call_again"),
@@ -78,7 +80,8 @@ class WatchScreen(TangyScreen[None]):
         self._called = staff_names(self._log.name)
         self._who, self._note = who, note
         self._view: GameView | None = None
-        self._there = self._told_none = False
+        self._there = False
+        self._none = 0  # looks without a game
         self._shown: tuple[str, tuple[str, ...]] = ("", ())
         self._activity: Activity | None = None
 
@@ -138,9 +141,12 @@ class WatchScreen(TangyScreen[None]):
                 self.query_one(LogView).write(GOES_ON_LATER, "warn")
         if self._guest.stops > stops:
             self.query_one(LogView).write(text.STOPPED_HERE, "bad")
-        if self._there and self._guest.pid and self._guest.view is None and not self._told_none:
-            self._told_none = True
-            self.query_one(LogView).write(text.NO_GAME, "dim")
+        if self._there and self._guest.pid and self._guest.view is None:
+            self._none += 1
+            if self._none == LOOKS_WITHOUT:
+                self.query_one(LogView).write(text.NO_GAME, "dim")
+        elif self._none < LOOKS_WITHOUT:
+            self._none = 0
         if self._guest.view != self._view:
             self._view = self._guest.view
             await self._show_room()

@@ -16,7 +16,7 @@ from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import draw, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
-SEEN, ESC_SEEN = "  [{acknowledge}] seen", "  [esc {acknowledge}] seen"
+SEEN, ESC_SEEN = "  [{acknowledge}] seen", "  [esc, then {acknowledge}] seen"
 """The key that acknowledges a fault; the second while an input line takes letters."""
 
 MOST_LINES = 4
