@@ -24,7 +24,7 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.panels import key_line, panel
-from tangy_tui.ui.session_reports import write_page
+from tangy_tui.ui.printed_report import write_page
 from tangy_tui.ui.widgets.page import Page, PageLine
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.wrapping import wrap
