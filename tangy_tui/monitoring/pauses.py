@@ -35,7 +35,7 @@ class PauseTotal:
         return {"count": self.count, "seconds": self.seconds}
 
     def with_stops(self) -> dict[str, float]:
-        """Return the totals as `--json` prints those of staff, with the STOPs among them."""
+        """Return the same with the number of STOPs among them; the time is in s."""
         return {**self.to_json(), "stops": self.stops}
 
 

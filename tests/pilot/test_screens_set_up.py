@@ -380,10 +380,9 @@ async def test_the_status_warns_of_a_robot_that_is_not_well_and_of_nothing_else(
         assert isinstance(page, SetUpScreen)
         setting.setup.world = await setting.switch_on()
         setting.setup.said = True  # and nobody has heard it: the sound is not ready
-        page._show()
-        status = page.query_one(StatusLine).status
-        assert setting.setup.not_ready and (status.robot, status.alarm) == ("OK", False)
+        line = page.query_one(StatusLine)
+        await until_shown(pilot, lambda: line.status.robot == "OK")
+        assert setting.setup.not_ready and not line.status.alarm
         setting.link.ail("laser", "ERROR")
-        page._show()
-        status = page.query_one(StatusLine).status
-        assert (status.robot, status.alarm) == (NOT_READY, True)
+        await until_shown(pilot, lambda: line.status.robot == NOT_READY)
+        assert line.status.alarm

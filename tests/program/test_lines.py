@@ -412,7 +412,7 @@ def test_help_at_a_question_explains_every_word(workspace: Workspace) -> None:
     assert said[0] == answer
     for behaviour in workspace.activity.behaviours.values():
         assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
-    assert "  where, why: says what Tangy sees, and why it does the next thing" in said
+    assert "  where, why: says what Tangy sees; what it does now and next, and why" in said
     assert asked(workspace, "qwertz")[-1] == answer
     assert asked(workspace, "yes") == ["There is no question open: give a command."]
 
