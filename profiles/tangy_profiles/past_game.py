@@ -119,6 +119,8 @@ class PastGame:
     """For whom staff asked for help so late that no step shows it, in order."""
     cards: KnownCards = field(default_factory=KnownCards)
     """Whose card was known in this game."""
+    unmade: tuple[GameChange, ...] = ()
+    """Who left or came by the word of staff, so late that the game had not changed yet."""
     came: tuple[tuple[str, int], ...] = ()
     """The new people who came, in order, each with the place (from 0) that staff gave them."""
 
@@ -339,9 +341,34 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         acted=acted,
         asked_for=_asked_for(acts, last),
         cards=KnownCards.of(notes),
+        unmade=_unmade(newest.record, notes, changes, len(own)),
         came=tuple(
             (note.person, note.seat - 1) for note in notes if note.did == "came" and note.seat
         ),
+    )
+
+
+def _unmade(
+    game: GameBeginning, notes: Sequence[StaffAction], changes: Sequence[GameChange], steps: int
+) -> tuple[GameChange, ...]:
+    """Return who left or came by the word of staff, but not by the changes of the game."""
+    away, told = {*game.absent}, dict[str, StaffAction]()
+    for change in changes:
+        if change.game == game.game and change.what in ("left", "came", "joined"):
+            (away.add if change.what == "left" else away.discard)(change.person)
+    for note in notes:
+        if note.did in ("left", "came") and not note.seat:  # somebody new joins otherwise
+            told[note.person] = note
+    return tuple(
+        GameChange(
+            game=game.game,
+            steps=steps,
+            what="left" if note.did == "left" else "came",
+            person=person,
+            by=note.by,
+        )
+        for person, note in told.items()
+        if (note.did == "left") is not (person in away)
     )
 
 

@@ -199,7 +199,7 @@ class GameController(PausingGames):
         world = self.supervision.world
         if self.supervision.over:
             self._watch.end(world.seconds)
-        return self._watch.look(world.scene(), world.people, world.seconds, world)
+        return self._watch.look(self.plan.scene, world.people, world.seconds, world)
 
     def look(self) -> list[Event] | None:
         """Check the devices and return new events; None while a behaviour is being carried out."""
@@ -244,9 +244,11 @@ class GameController(PausingGames):
                     return self._dispatch(command)
                 if isinstance(command, EndGame):
                     self.break_off()
+                self.plan.say_early(command)
                 with self._turn:
                     return self._dispatch(command)
             finally:
+                self.plan.forget_early(command)
                 self._tell_all()
 
     def _tell_all(self) -> None:

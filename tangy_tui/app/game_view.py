@@ -88,7 +88,7 @@ def _view_now(control: GameController) -> GameView | None:
         phase=control.phase,
         robot=robot,
         cause=cause,
-        scene=world.scene(),
+        scene=control.plan.scene,
         pose=None if pose is None else (round(pose.x, 2), round(pose.y, 2)),
         room=supervision.game.room,
         seconds=int(seen.seconds),

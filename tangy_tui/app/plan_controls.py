@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from tangy_profiles.game_records import ChangeKind
 from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, next_pace
 from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.scene import Scene
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
     ChangePace,
@@ -37,6 +38,8 @@ class GamePlanControls:
         self._supervision = supervision
         self._note = note
         self._by = by
+        self._said: list[ComesIn | GoesAway] = []
+        """Who staff said has come or left, until it takes effect after the present step."""
 
     @property
     def world(self) -> PlannedGame | None:
@@ -94,6 +97,38 @@ class GamePlanControls:
         """The label of the number that Tangy is saying now, "" if it says none."""
         world = self.world
         return "" if world is None else "".join(map(world.activity.deck.label, world.calling))
+
+    def say_early(self, command: GameCommand) -> None:
+        """Log who comes or leaves at once, unless that is refused; the game changes later."""
+        if self._idle or not isinstance(command, ComesIn | GoesAway):
+            return
+        if self._refuses_move(command, self.away) is None:
+            self._note("came" if isinstance(command, ComesIn) else "left", person=command.person)
+            self._said.append(command)
+
+    def forget_early(self, command: GameCommand) -> None:
+        """Forget what was logged early, once its command was carried out or failed."""
+        if isinstance(command, ComesIn | GoesAway) and command in self._said:
+            self._said.remove(command)
+
+    @property
+    def away(self) -> frozenset[str]:
+        """Who is not here, by the game, and by what staff have said since."""
+        changes = self._supervision.game.changes
+        gathering = changes.gathering
+        away = frozenset[str]() if gathering is None else gathering.away
+        for said in tuple(self._said):
+            away = away - {said.person} if isinstance(said, ComesIn) else away | {said.person}
+        return away
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, with who is here by the word of staff."""
+        scene, away = self._supervision.world.scene(), self.away
+        if away == scene.away:
+            return scene
+        asking = tuple(person for person in scene.requests if person not in away)
+        return replace(scene, requests=asking, away=away)
 
     def refuses(self, command: GameCommand) -> StaffNote | None:
         """Return why a command can never work, before its turn; None if it may."""
@@ -231,20 +266,31 @@ class GamePlanControls:
         """Mark a person as present or absent, in the present game or before the next one."""
         changes = self._supervision.game.changes
         gathering, person, here = changes.gathering, command.person, isinstance(command, ComesIn)
-        if gathering is None or person not in gathering.people:
+        if gathering is None:
             return StaffNote("not playing", person)
         away = frozenset(changes.plan.absent) if self._idle else gathering.away
-        if here is (person not in away):
-            return StaffNote("here before" if here else "away before", person)
-        if changes.world is None and not here and not set(gathering.people) - away - {person}:
-            return StaffNote("last one", person)
+        if refused := self._refuses_move(command, away):
+            return refused
         if self._idle:
             absent = away - {person} if here else away | {person}
             gathering.choose(replace(changes.plan, absent=tuple(sorted(absent))))
         else:
             self._supervision.game.change("came" if here else "left", person=person, by=self._by)
-        self._note("came" if here else "left", person=person)
+        if command not in self._said:  # it was logged when staff said it
+            self._note("came" if here else "left", person=person)
         return StaffNote("comes" if here else "goes", person)
+
+    def _refuses_move(self, command: ComesIn | GoesAway, away: frozenset[str]) -> StaffNote | None:
+        """Return why a person cannot come or leave while these people are away."""
+        changes = self._supervision.game.changes
+        gathering, person, here = changes.gathering, command.person, isinstance(command, ComesIn)
+        if gathering is None or person not in gathering.people:
+            return StaffNote("not playing", person)
+        if here is (person not in away):
+            return StaffNote("here before" if here else "away before", person)
+        if changes.world is None and not here and not set(gathering.people) - away - {person}:
+            return StaffNote("last one", person)
+        return None
 
 
 def _number_called(world: PlannedGame, label: str) -> int | None:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Literal
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.gathering import as_gathering
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_tui.monitoring.attention import goes_to_people
@@ -119,26 +118,19 @@ class StaffWatch:
         there = planned is None or planned.arrived
         if scene.place != FRONT and there:
             self._visited[scene.place] = now
-        gathering = as_gathering(world)
-        away = frozenset[str]() if gathering is None else gathering.away
         robot = scene.place if there else "", "" if planned is None else planned.bound_for
         return StaffView(
             0.0 if self._began is None else max(0.0, now - self._began),
             scene.called,
-            tuple(
-                _with_facts(self._person(person, scene, now, away, robot), world)
-                for person in people
-            ),
+            tuple(_with_facts(self._person(person, scene, now, robot), world) for person in people),
             0.0 if planned is None else planned.pace,
             None if self._paused is None or self._ended is not None else now - self._paused,
         )
 
-    def _person(
-        self, person: str, scene: Scene, now: float, away: frozenset[str], robot: tuple[str, str]
-    ) -> PersonNow:
+    def _person(self, person: str, scene: Scene, now: float, robot: tuple[str, str]) -> PersonNow:
         asks, visited = self._asks.get(person), self._visited.get(person)
         state: PersonState = "asks" if person in scene.requests else "plays"
-        if person in away:
+        if person in scene.away:
             state = "away"
         elif person in robot:
             state = "visited" if person == robot[0] else "comes"

@@ -164,7 +164,8 @@ class Facilitation:
             self.change("joined", person=person, place=places[person], by=by)
             for person in past.newcomers
         ]
-        return [ResumedGame(self._game, self.games, self.steps, state), *joined]
+        late = [self.change(c.what, person=c.person, by=c.by) for c in past.unmade]
+        return [ResumedGame(self._game, self.games, self.steps, state), *joined, *late]
 
     def _enter(self, game: str, number: int, steps: int, state: ActivityState) -> None:
         """Set the current game and step."""

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.state import FRONT
+from tangy_tui.app.game_commands import ClaimCard, ComesIn, GoesAway, TakeBackCall
 from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
 
 if TYPE_CHECKING:
-    from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote
+    from tangy_tui.app.game_commands import Autonomy, GameCommand, NoteKind, Proposal, StaffNote
 
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",
@@ -260,9 +261,19 @@ WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
-def waits_words(card: int = 0) -> str:
-    """Tell that a command waits until Tangy has finished; a claim names its card."""
-    then = f"checks card {card}" if card else "does what you said"
+def waits_words(command: GameCommand, name: Callable[[str], str]) -> str:
+    """Tell that a command waits until Tangy has finished, and what comes of it then."""
+    match command:
+        case GoesAway(person):
+            return f"{name(person)} has left. Tangy finishes this, then goes there no more."
+        case ComesIn(person):
+            return f"{name(person)} is here. Tangy finishes this, then counts on {name(person)}."
+        case ClaimCard(card=card) if card:
+            then = f"checks card {card}"
+        case TakeBackCall(label) if label:
+            then = f"takes {label} back"
+        case _:
+            then = "does what you said"
     return f"One moment: Tangy finishes this, then {then}."
 
 

@@ -12,6 +12,7 @@ from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.speech import with_names
 from tangy_profiles.game_records import CallMade, CallStage
 from tangy_profiles.present_moment import as_present
+from tangy_profiles.scene import Scene
 from tangy_tui.app.staff_view import next_step
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import (
@@ -77,6 +78,8 @@ class GamePicture:
         """Whether a resumed game continues at once."""
         self.counts: Callable[[], bool] | None = None
         """Whether the time to the next call is counted down; None: the screen is not for staff."""
+        self.scene: Callable[[], Scene] = supervision.world.scene
+        """Returns the scene to show."""
         self._stage = ""
         self._step: int | None = None
         self._game: int | None = None
@@ -260,7 +263,7 @@ class GamePicture:
     def show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
         """Show the room after a step of some s, `pace` times as fast as real (0: at once)."""
         room = self._screen.query_one(RoomView)
-        scene = self._supervision.world.scene()
+        scene = self.scene()
         if drive and pace:
             room.drive(scene.place, seconds / pace * DRIVING_SHARE)
         room.show(scene)

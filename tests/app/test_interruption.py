@@ -218,6 +218,7 @@ class Robot:
         self, workspace: Workspace, past: PastGame | None = None, on_for: float = 0.0
     ) -> None:
         policy, _ = load_policy(workspace.store, workspace.activity)
+        self.workspace = workspace
         self.link = FakeLink(tuple(workspace.names))
         self.link.time = on_for
         self.world = LiveWorld(

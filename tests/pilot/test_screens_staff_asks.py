@@ -10,13 +10,13 @@ from textual.widgets import Input, Static
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.command_grammar import command_reader
-from tangy_tui.app.game_commands import AskFor
+from tangy_tui.app.game_commands import AskFor, GoesAway
 from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.confirmations import called_meanwhile
-from tangy_tui.text.control import WAITS_FOR_YOU
+from tangy_tui.text.control import WAITS_FOR_YOU, waits_words
 from tangy_tui.text.games import REPORT_AFTER_LEAVING, REPORT_AT_HOME
 from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.staff_view import TIME_FIRST
@@ -26,6 +26,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import StatusLine
@@ -81,8 +82,9 @@ async def test_a_call_is_taken_back_after_the_one_that_is_being_said(
     async with run(app=program) as pilot:
         room = live(pilot).query_one(RoomView)
         await until_shown(pilot, lambda: len(world.called_now) >= 2)
-        link.most = len(link.said)
-        await until_shown(pilot, lambda: len(world.calling) == 1)
+        while not world.calling:  # the next step may be a joke
+            link.most = len(link.said)
+            await pilot.pause(0.05)
         (said,), asked = world.calling, world.called_now[-1]
         await pilot.press("f2")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
@@ -95,6 +97,28 @@ async def test_a_call_is_taken_back_after_the_one_that_is_being_said(
         assert said in world.called_now and live(pilot).working
         await until_shown(pilot, lambda: room.scene.called == world.called_now)
         link.most = 10_000
+
+
+@pytest.mark.slow
+async def test_who_leaves_during_a_step_is_told_and_drawn_as_away_at_once(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
+) -> None:
+    async with run(app=program) as pilot:
+        screen = live(pilot)
+        await until_shown(pilot, lambda: screen.control.supervision.steps >= 2)
+        link.free = False
+        await until_shown(pilot, lambda: screen.working)
+        command = GoesAway("user3")
+        await pilot.press("colon")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, CommandDialog))
+        pilot.app.screen.query_one(Input).value = f"left {workspace.name('user3')}"
+        await pilot.press("enter")
+        told = waits_words(command, workspace.name)
+        await until_shown(pilot, lambda: told in screen.query_one(LogView).sentences)
+        await until_shown(pilot, lambda: screen.query_one(RoomView).scene.away == {"user3"})
+        assert world.away == set()  # not before the step is done
+        link.free = True
+        await until_shown(pilot, lambda: world.away == {"user3"})
 
 
 @pytest.mark.slow

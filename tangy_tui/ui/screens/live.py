@@ -192,7 +192,8 @@ class LiveScreen(PlayScreen):
     async def _do_beside(self, command: GameCommand) -> None:
         done = asyncio.create_task(self._beside(lambda: self.control.apply(command)))
         if not (await asyncio.wait({done}, timeout=ANSWERS_SECONDS))[0]:
-            self._tell_now(waits_words(getattr(command, "card", 0)), "dim")
+            self._tell_now(waits_words(command, self._workspace.name), "dim")
+            self.picture.show_scene(0, drive=False, pace=0)
         self._take(await done)
 
     def action_pause(self) -> None:
@@ -263,7 +264,7 @@ class LiveScreen(PlayScreen):
             await super()._carry_out(command)
         else:
             await self._do_beside(command)
-            self.query_one(RoomView).show(self.world.scene())
+            self.query_one(RoomView).show(self.control.plan.scene)
 
     def action_ask_for(self) -> None:
         """Ask for help on behalf of a person."""
@@ -271,7 +272,7 @@ class LiveScreen(PlayScreen):
             self.run_worker(self._ask_for(), name="ask", group="ask")
 
     async def _ask_for(self) -> None:
-        away = self.world.scene().away
+        away = self.control.plan.away
         here = [person for person in self._workspace.people if person.id not in away]
         options = [Option(person.id, person.name) for person in here]
         person = await self.app.push_screen_wait(ChooseDialog(WHO_NEEDS_HELP, options))

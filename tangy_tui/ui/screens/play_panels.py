@@ -79,6 +79,7 @@ class PlayPanels(TangyScreen[Tally]):
         self.minutes = 0
         """The planned length of the session in minutes; 0: no limit."""
         self.picture = GamePicture(self, workspace, control.supervision)
+        self.picture.scene = lambda: control.plan.scene
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
     def _tell(self, events: list[Event], known: bool = False) -> None:

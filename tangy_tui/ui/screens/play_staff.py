@@ -250,8 +250,7 @@ class PlayStaff(PlayPanels):
         self.run_worker(self._presence(), name="presence", group="type", exclusive=True)
 
     async def _presence(self) -> None:
-        world = self.control.plan.world
-        away = frozenset[str]() if world is None else world.away
+        away = self.control.plan.away
         options = [
             Option(person.id, person.name, IS_AWAY if person.id in away else IS_HERE)
             for person in self._workspace.people

@@ -1,0 +1,101 @@
+"""Who leaves or comes during a step is logged and shown at once, and takes effect after it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from tangy_profiles.game_records import GameChange
+from tangy_profiles.past_game import interrupted_game
+from tangy_profiles.staff_records import StaffAction
+from tangy_tui.app.game_commands import ComesIn, GameCommand, GoesAway
+from tangy_tui.app.workspace import Workspace
+from tests.app.test_interruption import Robot
+from tests.support.waiting import wait_until
+
+
+@pytest.fixture
+def robot(taught: Path) -> Robot:
+    return Robot(Workspace(taught))
+
+
+def said(robot: Robot) -> list[tuple[str, str]]:
+    """Return who left or came by the word of staff, as logged."""
+    acts = (event.record for event in robot.workspace.store.events(StaffAction))
+    return [(act.did, act.person) for act in acts if act.did in ("left", "came")]
+
+
+def changed(robot: Robot) -> list[tuple[str, str]]:
+    """Return who left or came in the game, as logged."""
+    found = (event.record for event in robot.workspace.store.events(GameChange))
+    return [(one.what, one.person) for one in found if one.what in ("left", "came")]
+
+
+def has_said(robot: Robot, count: int) -> bool:
+    return len(said(robot)) == count
+
+
+def during_a_step(robot: Robot, *commands: GameCommand) -> list[tuple[str, ...]]:
+    """Give commands during the next step; return who was shown as away after each of them."""
+    threads, shown = list[Thread](), list[tuple[str, ...]]()
+
+    def meanwhile(do: str, time: float) -> None:
+        robot.link.meanwhile = lambda do, time: None
+        for number, command in enumerate(commands, len(said(robot)) + 1):
+            threads.append(Thread(target=robot.control.carry_out, args=(command,)))
+            threads[-1].start()
+            wait_until(partial(has_said, robot, number))
+            people = robot.control.view().people
+            shown.append(tuple(one.id for one in people if one.state == "away"))
+            assert changed(robot) == []
+
+    robot.link.meanwhile = meanwhile
+    robot.next(1)
+    for thread in threads:
+        thread.join()
+    return shown
+
+
+def test_who_leaves_during_a_step_is_logged_and_shown_before_it_is_over(robot: Robot) -> None:
+    assert during_a_step(robot, GoesAway("user2")) == [("user2",)]
+    assert said(robot) == changed(robot) == [("left", "user2")]
+    assert robot.control.plan.away == robot.world.away == {"user2"}
+
+
+def test_who_leaves_and_comes_back_during_a_step_is_here(robot: Robot) -> None:
+    shown = during_a_step(robot, GoesAway("user2"), ComesIn("user2"))
+    assert shown == [("user2",), ()]
+    assert said(robot) == changed(robot) == [("left", "user2"), ("came", "user2")]
+    assert robot.control.plan.away == robot.world.away == set()
+
+
+def test_a_word_of_staff_that_an_interruption_overtook_holds_in_the_resumed_game(
+    robot: Robot,
+) -> None:
+    robot.next(1)
+    store = robot.workspace.store
+    robot.control.note("left", person="user2")  # logged, and then the program was killed
+    robot.control.interrupt()
+    past = interrupted_game(store, "bingo")
+    assert past is not None
+    assert [(one.what, one.person) for one in past.unmade] == [("left", "user2")]
+    again = Robot(robot.workspace, past)
+    assert again.world.away == {"user2"} and changed(again) == [("left", "user2")]
+    past = interrupted_game(store, "bingo")
+    assert past is not None and past.unmade == ()
+
+
+def test_a_log_that_has_the_change_before_the_word_of_staff_repeats_nothing(robot: Robot) -> None:
+    robot.next(1)
+    robot.control.apply(GoesAway("user2"))
+    store = robot.workspace.store
+    act, change = store.last(StaffAction), store.last(GameChange)
+    assert act is not None and change is not None
+    store.append(replace(change.record, what="came"))
+    store.append(replace(act.record, did="came"))
+    past = interrupted_game(store, "bingo")
+    assert past is not None and past.unmade == ()
