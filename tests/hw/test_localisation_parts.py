@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import hypot, inf, pi
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -13,11 +14,20 @@ from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.navigation.likelihood import IN_CACHE, LikelihoodField, thin
 from tangy_hw.navigation.localisation import LEAD
 from tangy_hw.navigation.occupancy import map_of_room
-from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
+from tangy_hw.navigation.particles import (
+    FEWEST,
+    MOST,
+    around,
+    likeliest,
+    move,
+    moved,
+    needed,
+    resample,
+)
 from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
+from tangy_hw.navigation.recent_scans import BACK, MANY, Comparison, RecentScans
 from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
-from tangy_hw.navigation.recent_scans import MANY, Comparison, RecentScans
 from tangy_hw.navigation.scan_matching import Reference
 from tangy_hw.navigation.slip_detection import SlipDetector
 from tangy_profiles.room import load_room
@@ -71,6 +81,11 @@ class TestParticles:
         back = move(start, Pose(-0.5, 0, 0), np.random.default_rng(1))
         assert back[:, 0].mean() == pytest.approx(-0.5, abs=0.03)
         assert back.std(axis=0) == pytest.approx(ahead.std(axis=0), rel=0.1)
+
+    def test_a_move_without_noise_is_the_middle_of_those_with_noise(self) -> None:
+        start, step = np.array([(1.0, 2.0, 0.5), (2.0, 1.0, -3.0)]), Pose(0.3, -0.1, 0.4)
+        noiseless = move(start, step, np.random.default_rng(0), alpha=0.0)
+        assert moved(start, step) == pytest.approx(noiseless)
 
     @given(st.lists(st.floats(0.01, 1), min_size=1, max_size=30), st.integers(1, 200))
     @settings(max_examples=25, deadline=None)
@@ -216,8 +231,16 @@ class TestRecentScans:
         assert hypot(rival.x - true.x, rival.y - true.y) < 0.3
 
     def test_scans_that_each_fit_better_somewhere_name_no_better_place(self) -> None:
-        (lead, rival, over_rival), _, _ = self.compared(FEWEST_SCANS, elsewhere=1.0)
-        assert lead < 0.0 < 0.1 < over_rival and rival is not None
+        found, _, _ = self.compared(FEWEST_SCANS, elsewhere=1.0, hidden=True)
+        assert found.lead < 0.0 and found.over_rival == inf and found.rival is None
+
+    def test_places_that_the_scans_rule_out_are_followed_no_further(self) -> None:
+        scores = LikelihoodField.scores
+        with patch.object(LikelihoodField, "scores", autospec=True, side_effect=scores) as every:
+            self.compared(FEWEST_SCANS)
+            followed, every.call_count = every.call_count, 0
+            self.compared(FEWEST_SCANS, elsewhere=1.0, hidden=True)
+        assert every.call_count == followed - len(BACK) * (FEWEST_SCANS - 1)
 
     def test_a_place_where_few_scans_fit_poorly_is_not_believed(self) -> None:
         for steps in (FEWEST_SCANS, MANY - 1):

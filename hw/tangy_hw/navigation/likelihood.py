@@ -40,6 +40,12 @@ def evenly(points: Floats, most: int) -> Floats:
 
 
 @lru_cache(maxsize=1024)
+def _share(count: int) -> Field:
+    """Return the share of each of `count` beams in a score, for each level of the field."""
+    return np.full(count, (1 - FLOOR) / LEVELS / max(count, 1), dtype=np.float32)
+
+
+@lru_cache(maxsize=1024)
 def _spaced(count: int, most: int) -> NDArray[np.intp]:
     return np.linspace(0, count - 1, most).round().astype(np.intp)
 
@@ -97,9 +103,11 @@ class LikelihoodField:
             points: ends of the beams (n, 2) in the robot's frame.
         """
         count = len(points)
-        share = np.full(count, (1 - FLOOR) / LEVELS / max(count, 1), dtype=np.float32)
+        share = _share(count)
         at_once = max(1, IN_CACHE // max(count, 1))
         turned, ends = self._transforms(poses), _homogeneous(points)
+        if 0 < len(poses) <= at_once:
+            return np.asarray(FLOOR + (self._levels(turned @ ends) @ share).astype(np.float64))
         found = [
             self._levels(turned[:, first : first + at_once] @ ends) @ share
             for first in range(0, len(poses), at_once)

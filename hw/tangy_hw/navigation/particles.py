@@ -46,6 +46,17 @@ def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) ->
     )
 
 
+def moved(poses: Floats, step: Pose) -> Floats:
+    """Return poses (n, 3) moved by an odometry step (m, rad) without noise."""
+    heading = poses[:, 2]
+    cos, sin = np.cos(heading), np.sin(heading)
+    there = np.empty_like(poses)
+    there[:, 0] = poses[:, 0] + cos * step.x - sin * step.y
+    there[:, 1] = poses[:, 1] + sin * step.x + cos * step.y
+    there[:, 2] = wrap(heading + step.heading)
+    return there
+
+
 def _errs(moved: float) -> float:
     """Return the effective square of a step in m, or of a turn in rad."""
     return moved * min(moved, WHOLE)

@@ -104,11 +104,13 @@ def nudged(
     offs = rng.standard_normal((len(poses), nudges.each, 3))
     offs *= deviations
     np.add(poses[:, None], offs, out=tried[:, 1:])
-    fits = field.scores(tried.reshape(-1, 3), points).reshape(len(poses), nudges.each + 1)
-    rows, best = np.arange(len(poses)), fits.argmax(axis=1)
-    chosen = tried[rows, best]
+    every = tried.reshape(-1, 3)
+    fits = field.scores(every, points)
+    best = fits.reshape(len(poses), nudges.each + 1).argmax(axis=1)
+    best += np.arange(0, len(every), nudges.each + 1)
+    chosen = every.take(best, axis=0)
     chosen[:, 2] = wrap(chosen[:, 2])
-    return chosen, fits[rows, best]
+    return chosen, fits.take(best)
 
 
 def _best(poses: Floats, scores: Floats, count: int) -> Floats:

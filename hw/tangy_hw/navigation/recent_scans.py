@@ -15,7 +15,7 @@ from numpy.random import Generator
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.likelihood import FLOOR, LikelihoodField, evenly
-from tangy_hw.navigation.particles import move
+from tangy_hw.navigation.particles import moved
 from tangy_hw.navigation.pose_search import Nudges, nudged
 from tangy_hw.navigation.poses import IDENTITY, Floats, relative_pose
 
@@ -67,7 +67,7 @@ class RecentScans:
             scores: their scores (m,).
         """
         points = evenly(points, BEAMS)
-        followed = self._moved(self._places, self._odometry, odometry)
+        followed = moved(self._places, relative_pose(self._odometry, odometry))
         followed, fits = nudged(followed, points, self._field, ALONG, self._rng)
         self._odometry = odometry
         order = np.argsort(-np.concatenate((fits, scores)))
@@ -87,8 +87,8 @@ class RecentScans:
         The lead is by how much the scans support the pose more: the sum over the scans of the
         differences between the logarithms of the fits. It is `inf` if they fit nowhere else, and
         `-inf` while they are too few to say. It may be negative without a better place: each scan
-        for itself may fit better somewhere else. While few scans fit, and
-        poorly, it is not positive.
+        for itself may fit better somewhere else. It is then only an upper bound, and there is no
+        rival. While few scans fit, and poorly, the lead is not positive.
 
         Args:
             pose: the pose that may be believed, in m and rad.
@@ -102,22 +102,38 @@ class RecentScans:
             return Comparison(-inf)
         if len(poses) == 1:
             return Comparison(inf)
-        there, support, anywhere, now = poses, np.zeros(len(poses)), 0.0, odometry
-        for then, seen, best in reversed(self._kept):
-            there, now = self._moved(there, now, then), then
-            for nudges in BACK:
-                there, fits = nudged(there, seen, self._field, nudges, self._rng)
-            support += np.log(fits)
-            anywhere += best - BY_CHANCE
+        anywhere = sum(best - BY_CHANCE for _, _, best in self._kept)
+        support = self._support(poses, odometry, anywhere)
         rival = 1 + int(support[1:].argmax())
         lead, over_rival = support[0] - max(support[rival], anywhere), support[0] - support[rival]
         if support[0] < POOR * len(self._kept) and len(self._kept) < MANY:
             lead = min(lead, 0.0)
+        if over_rival == inf:
+            return Comparison(float(lead))
         return Comparison(float(lead), Pose(*poses[rival]), float(over_rival))
 
-    def _moved(self, poses: Floats, start: Pose, end: Pose) -> Floats:
-        """Return where poses (n, 3) are after the way between two poses by odometry."""
-        return move(poses, relative_pose(start, end), self._rng, alpha=0.0)
+    def _support(self, poses: Floats, odometry: Pose, least: float) -> Floats:
+        """Return how well the scans support each of the poses (n, 3): sums of logarithms (n,).
+
+        The poses are followed back along the odometry, and refined at each scan. With each scan the
+        sums only fall. So a pose other than the first is left behind once its sum is below `least`,
+        and counts as `-inf`. If all the others are left behind, and the first pose has a sum below
+        `least`, the rest of the scans could not change that, and are left out.
+        """
+        support, rows, there, now = np.zeros(len(poses)), np.arange(len(poses)), poses, odometry
+        for then, seen, _ in reversed(self._kept):
+            there, now = moved(there, relative_pose(now, then)), then
+            for nudges in BACK:
+                there, fits = nudged(there, seen, self._field, nudges, self._rng)
+            support[rows] += np.log(fits)
+            left = support[rows] < least
+            left[0] = False
+            if left.any():
+                support[rows[left]] = -inf
+                rows, there = rows[~left], there[~left]
+            if len(rows) == 1 and support[0] < least:
+                break
+        return support
 
 
 def _distinct(poses: Floats, most: int) -> Floats:
