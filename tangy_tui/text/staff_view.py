@@ -154,7 +154,10 @@ def said_words(said: str) -> str:
 
 def person_words(person: PersonNow) -> str:
     """Describe a person's state, with the relevant times."""
-    seen = "" if person.unvisited is None else f"visit {lasting_words(person.unvisited)} ago"
+    seen = ""
+    if person.unvisited is not None:
+        just = person.unvisited < STEP_SECONDS
+        seen = "just visited" if just else f"visit {lasting_words(person.unvisited)} ago"
     match person.state:
         case "away":
             return "not here"
@@ -163,7 +166,8 @@ def person_words(person: PersonNow) -> str:
         case "comes":
             return "Tangy comes"
         case "asks":
-            waits = "" if person.waits is None else f" {lasting_words(person.waits)}"
+            known = person.waits is not None and person.waits >= STEP_SECONDS
+            waits = f" {lasting_words(person.waits or 0.0)}" if known else ""
             return f"asks{waits}" + (f", {seen}" if seen else "")
         case "plays":
             told = seen or ("no visit yet" if person.goes_round else "")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
-from tangy_tui.app.staff_view import StaffWatch
+from tangy_tui.app.staff_view import PersonNow, StaffWatch
 from tangy_tui.text.staff_view import person_words
 from tests.support.declared import declared
 
@@ -37,3 +39,9 @@ def test_scores_and_the_turn_stand_beside_the_names_where_nobody_is_visited() ->
 
 def test_a_person_of_a_game_with_visits_has_none_yet() -> None:
     assert lines(object()) == ["no visit yet", "no visit yet"]
+
+
+def test_a_wait_and_a_visit_of_a_few_seconds_are_told_without_a_number() -> None:
+    just = PersonNow("ann", "asks", 1, waits=4.0, unvisited=3.0)
+    assert person_words(just) == "asks, just visited"
+    assert person_words(replace(just, waits=14.0, unvisited=24.0)) == "asks 10 s, visit 20 s ago"

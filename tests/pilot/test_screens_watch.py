@@ -29,7 +29,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.control import autonomy_words
 from tangy_tui.text.situations import OVER_NOW
-from tangy_tui.text.staff_view import clock_words, lasting_words, time_words
+from tangy_tui.text.staff_view import clock_words, lasting_words, person_words, time_words
 from tangy_tui.text.watching import CLOSED, GONE, NO_GAME, PHASES, WORLDS, robot_words
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
@@ -90,13 +90,13 @@ async def test_the_screen_shows_the_times_and_waits_of_the_staff_panel(
     async with run(screen, size=size) as pilot:
         await until(lambda: screen.query(RoomView))
         seen = control.view()
-        waits = {one.id: one.waits for one in seen.people if one.waits is not None}
-        (first, *_), words = world.scene().requests, lasting_words(waits[world.scene().requests[0]])
+        first = world.scene().requests[0]
+        (asks,) = (one for one in seen.people if one.id == first)
+        words = person_words(asks)
         assert clock_words(seen.seconds) != "0:00"
         await until_shown(pilot, lambda: time_words(seen.seconds, 0) in pilot.text())
-        name = f"User {first.removeprefix('user')}"
-        told = f"{name} {words}" if size == SMALL else f"asks {words}"
-        assert told in pilot.text()
+        told = f"User {first.removeprefix('user')} {lasting_words(asks.waits or 0.0)}"
+        assert (told if size == SMALL else words) in pilot.text()
 
 
 async def test_the_screen_follows_the_game(

@@ -71,3 +71,16 @@ async def test_a_panel_that_was_scrolled_returns_to_the_next_step(run: Run) -> N
         await pilot.press("down", "home")
         await pilot.pause()
         assert panel.scroll_offset.y == 0
+
+
+async def test_a_long_next_step_takes_two_lines_and_shows_where_it_is_cut(run: Run) -> None:
+    words = [f"word{number:02}" for number in range(40)]
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.show("B7", " ".join(words[:12]), ["1:01 so far"], [("Rosa", "asks 10 s", "warn")])
+        await pilot.pause()
+        assert all(word in pilot.text() for word in words[:12])
+        panel.show("B7", " ".join(words), ["1:01 so far"], [("Rosa", "asks 10 s", "warn")])
+        await pilot.pause()
+        first, second, third = pilot.lines()[:3]
+        assert words[0] in first and second.endswith("…") and "word" not in third

@@ -58,6 +58,9 @@ BOARD_HEIGHT = 9
 
 HARD = "\N{NO-BREAK SPACE}"
 
+NEXT_HEIGHT = 9
+"""A panel with more lines gives the next step two of them, if it needs them."""
+
 PersonLine = tuple[str, str, str]
 """The name of a person, their state, and its ink."""
 
@@ -126,8 +129,11 @@ class StaffPanel(RowView, can_focus=True):
         if not self.is_attached or width < 10:
             return
         empty = not self._call and not self._board  # the activity has no calls
-        most = 3 if empty else 2 if height > 11 else 1
-        next_lines = wrap(clean(self._next), width)[:most]
+        most = 3 if empty else 2 if height > NEXT_HEIGHT else 1
+        next_lines = wrap(clean(self._next), width)
+        if len(next_lines) > most:  # a sentence must not look whole if it is cut
+            next_lines[most - 1] = shorten(" ".join(next_lines[most - 1 :]), width)
+        next_lines = next_lines[:most]
         rows: list[Row] = [((line, "strong"),) for line in next_lines]
         rows += self._block(width, height)
         rows += self._everybody(width, max(1, height - len(rows)))
