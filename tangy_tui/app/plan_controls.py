@@ -153,15 +153,18 @@ class GamePlanControls:
         return replace(claim, card=self.world.known_cards.get(claim.person, 0))
 
     def may_hold(self, claim: ClaimCard) -> tuple[str, ...]:
-        """Return the people who may have the card of a claim, if nobody knows whose it is."""
+        """Return the people who may have the card of a claim, if nobody knows whose it is.
+
+        These are the people here whose cards are not known, or everybody here if all are.
+        """
         world = self.world
         unclear = world is not None and not self._idle and claim.card and not claim.person
         if world is None or not unclear or world.holder(claim.card):
             return ()
         if world.numbers_on(claim.card) is None:
             return ()
-        known = world.known_cards
-        return tuple(one for one in world.people if one not in world.away and one not in known)
+        here = tuple(one for one in world.people if one not in world.away)
+        return tuple(one for one in here if one not in world.known_cards) or here
 
     def _no_card(self, claim: ClaimCard) -> StaffNote | None:
         """Return why a claim cannot be checked: there is no such card, or nobody here has it."""

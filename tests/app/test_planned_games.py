@@ -158,6 +158,8 @@ def test_those_who_may_hold_a_card_are_here_and_have_none(
     assert planned.control.plan.may_hold(ClaimCard(3)) == ("user3", "user4")
     assert planned.control.plan.may_hold(ClaimCard(3, "user3")) == ()
     assert planned.control.plan.may_hold(ClaimCard(99)) == ()
+    monkeypatch.setattr(SimulatedWorld, "known_cards", dict.fromkeys(planned.world.people, 1))
+    assert planned.control.plan.may_hold(ClaimCard(3)) == ("user1", "user3", "user4")
 
 
 @pytest.mark.parametrize("plan", [(), ("line",)])

@@ -118,6 +118,7 @@ class ReportScreen(TangyScreen[None]):
         for line in map(clean, self._lines):
             words = line.lstrip()
             indent = " " * (len(line) - len(words))
-            for part in wrap(words, max(10, width - len(indent))) or [""]:
+            room = width - len(indent) - 1  # a gap before the scroll bar
+            for part in wrap(words, max(10, room)) or [""]:
                 written.append(PageLine(((indent + part, "text"),)))
         return written
