@@ -265,9 +265,9 @@ def waits_words(command: GameCommand, name: Callable[[str], str]) -> str:
     """Tell that a command waits until Tangy has finished, and what comes of it then."""
     match command:
         case GoesAway(person):
-            return f"{name(person)} has left. Tangy finishes this, then goes there no more."
+            return f"{name(person)} has left: Tangy finishes this, and then stays away from that seat."
         case ComesIn(person):
-            return f"{name(person)} is here. Tangy finishes this, then counts on {name(person)}."
+            return f"{name(person)} is here: Tangy finishes this, and then goes there if asked."
         case ClaimCard(card=card) if card:
             then = f"checks card {card}"
         case TakeBackCall(label) if label:
