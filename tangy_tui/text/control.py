@@ -265,7 +265,8 @@ def waits_words(command: GameCommand, name: Callable[[str], str]) -> str:
     """Tell that a command waits until Tangy has finished, and what comes of it then."""
     match command:
         case GoesAway(person):
-            return f"{name(person)} has left: Tangy finishes this, and then stays away from that seat."
+            then = "and then stays away from that seat"
+            return f"{name(person)} has left: Tangy finishes this, {then}."
         case ComesIn(person):
             return f"{name(person)} is here: Tangy finishes this, and then goes there if asked."
         case ClaimCard(card=card) if card:

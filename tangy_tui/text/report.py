@@ -294,27 +294,31 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
     rows: list[tuple[str, str, str]] = []
     last = ("", "")  # who did the last row, and whether it set the pace
     for replay in replays:
-        answered = ("", "")  # the answer that the next behaviour carries out, and for whom
-        for moment in replay.moments:
-            what, at = moment.what, moment.at
-            told = _staff_words(moment, replay.activity, name)
-            if isinstance(what, Moved) and what.move.answer:
-                answered = (what.move.answer, what.move.target)
-            elif isinstance(what, Done) and what.teacher:
-                if answered != (what.behaviour, what.target or ""):  # after staff took over
-                    begun = datetime.fromisoformat(at) - timedelta(seconds=what.over - what.begun)
-                    at = begun.isoformat()
-                    words = _answer_words(replay.activity, what.behaviour, what.target or "", name)
-                    told = what.teacher, words
-                answered = ("", "")
-            if told is not None:
-                who, words = told
-                paced = isinstance(what, Noted) and what.did == "pace"
-                if paced and last == (who, "pace"):
-                    rows.pop()  # keys change it step by step: the last one counts
-                last = (who, "pace" if paced else "")
-                rows.append((time_of_day(at), who, words))
+        for at, who, words, paced in sorted(_done_by_staff(replay, name), key=lambda one: one[0]):
+            if paced and last == (who, "pace"):
+                rows.pop()  # keys change it step by step: the last one counts
+            last = (who, "pace" if paced else "")
+            rows.append((time_of_day(at.isoformat()), who, words))
     return rows
+
+
+def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, str, str, bool]]:
+    """Yield when staff did something in a game, who, what, and whether it set the pace."""
+    answered = ("", "")  # the answer that the next behaviour carries out, and for whom
+    for moment in replay.moments:
+        what, at = moment.what, datetime.fromisoformat(moment.at)
+        if (told := _staff_words(moment, replay.activity, name)) is not None:
+            yield at, *told, isinstance(what, Noted) and what.did == "pace"
+        if isinstance(what, Moved) and what.move.answer:
+            answered = (what.move.answer, what.move.target)
+        elif isinstance(what, Done) and what.teacher:
+            whom = what.target or ""
+            if answered != (what.behaviour, whom):  # after staff took over
+                lasted = 0.0 if replay.game.world == SIMULATED else what.over - what.begun
+                begun = at - timedelta(seconds=lasted)
+                words = _answer_words(replay.activity, what.behaviour, whom, name)
+                yield begun, what.teacher, words, False
+            answered = ("", "")
 
 
 def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple[str, str] | None:
