@@ -326,7 +326,7 @@ class StaffLines:
             return
         if isinstance(command, EndGame):
             self._controller.break_off()
-        self._tasks.put(lambda: self._controller.apply(command))
+        self._tasks.put(lambda: self._telling.in_turn(command))
 
     def _take(self, text: str) -> None:
         if not text or text.startswith("#"):

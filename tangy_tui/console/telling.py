@@ -5,16 +5,19 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable, Sequence
 
-from tangy_tui.app.game_commands import StaffNote
+from tangy_tui.app.game_commands import GameCommand, StaffNote
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, ResumedGame, Taught
 from tangy_tui.learning.verification import NotUnderstood, Verification
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
-from tangy_tui.text.control import noted_words
+from tangy_tui.text.control import noted_words, waits_words
 from tangy_tui.text.games import game_lines
 from tangy_tui.text.situations import Name
+
+SOON_SECONDS = 0.7
+"""For a command, before staff are told that it has to wait."""
 
 
 class GameTelling:
@@ -64,6 +67,13 @@ class GameTelling:
                     lines = [*lines, *self._progress.resumed()]
                 self.write_all(lines)
         self.write_all(filter(None, self._also(events)))
+
+    def in_turn(self, command: GameCommand) -> Sequence[ControllerOutput]:
+        """Carry out a command once the robot has done its present step; tell if that takes long."""
+        controller = self._controller
+        if controller.robot.there and not controller.wait_for_turn(SOON_SECONDS):
+            self.write(waits_words(command, self._name))
+        return controller.apply(command)
 
     def write(self, line: str) -> None:
         """Write a line."""

@@ -12,8 +12,11 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import ComesIn, GameCommand, GoesAway
+from tangy_tui.app.game_commands import ComesIn, GameCommand, GoesAway, StaffNote
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.in_progress import ProgressLines
+from tangy_tui.console.telling import GameTelling
+from tangy_tui.text.control import noted_words, waits_words
 from tests.app.test_interruption import Robot
 from tests.support.waiting import wait_until
 
@@ -64,6 +67,26 @@ def test_who_leaves_during_a_step_is_logged_and_shown_before_it_is_over(robot: R
     assert during_a_step(robot, GoesAway("user2")) == [("user2",)]
     assert said(robot) == changed(robot) == [("left", "user2")]
     assert robot.control.plan.away == robot.world.away == {"user2"}
+
+
+def test_lines_tell_at_once_that_a_command_waits_for_the_step(robot: Robot) -> None:
+    control, told = robot.control, list[str]()
+    command = GoesAway("user2")
+    progress = ProgressLines(control, str)
+    telling = GameTelling(control, str, told.append, progress, lambda events: [])
+    threads = list[Thread]()
+
+    def meanwhile(do: str, time: float) -> None:
+        robot.link.meanwhile = lambda do, time: None
+        threads.append(Thread(target=lambda: telling.tell(telling.in_turn(command))))
+        threads[-1].start()
+        wait_until(lambda: told == [waits_words(command, str)])
+        assert changed(robot) == []
+
+    robot.link.meanwhile = meanwhile
+    robot.next(1)
+    threads[0].join()
+    assert told == [waits_words(command, str), noted_words(StaffNote("goes", "user2"), str)]
 
 
 def test_who_leaves_and_comes_back_during_a_step_is_here(robot: Robot) -> None:
