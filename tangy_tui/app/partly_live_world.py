@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.health import Health
+from tangy_profiles.robot import Robot
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import Injection
 
@@ -27,6 +28,7 @@ class PartlyLiveWorld(FaultyWorld):
         *,
         seed: int,
         injections: Sequence[Injection] = (),
+        robot: Robot | None = None,
         live: Callable[[], Health],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -36,7 +38,7 @@ class PartlyLiveWorld(FaultyWorld):
         self._simulated: Health = ()
         self._merged: Health = ()
         self._asked = 0.0
-        super().__init__(activity, people, seed=seed, injections=injections)
+        super().__init__(activity, people, seed=seed, injections=injections, robot=robot)
 
     def health(self) -> Health:
         """Return the readings of all devices; real ones replace simulated ones."""

@@ -14,6 +14,7 @@ from tangy_tui.world import World
 
 if TYPE_CHECKING:
     from tangy_profiles.health import Health
+    from tangy_profiles.robot import Robot
     from tangy_sim.worlds.injection import Injection
 
 
@@ -23,6 +24,7 @@ def game_world(
     seed: int,
     injections: Sequence[Injection] | None,
     live: Callable[[], Health] | None = None,
+    robot: Robot | None = None,
 ) -> World:
     """Create the simulated world for games.
 
@@ -32,6 +34,7 @@ def game_world(
         seed: seeds the random generators.
         injections: faults to inject; None creates a world without faults.
         live: returns the readings of real devices, which replace simulated ones.
+        robot: the robot whose devices are simulated; None: all that can be.
 
     Raises:
         TangyError: the activity has no faults to inject.
@@ -42,19 +45,21 @@ def game_world(
 
         if injections:
             raise TangyError(f"No fault can be brought about in {activity.title} yet.")
-        return DeclaredWorld(activity, people, seed=seed, unclear=UNCLEAR)
+        return DeclaredWorld(activity, people, seed=seed, unclear=UNCLEAR, robot=robot)
     if live is not None:
         from tangy_tui.app.partly_live_world import PartlyLiveWorld
 
         to_come = injections or ()
-        return PartlyLiveWorld(activity, people, seed=seed, injections=to_come, live=live)
+        return PartlyLiveWorld(
+            activity, people, seed=seed, injections=to_come, live=live, robot=robot
+        )
     if injections is None:
         from tangy_sim.worlds.world import SimulatedWorld
 
-        return SimulatedWorld(activity, people, seed=seed)
+        return SimulatedWorld(activity, people, seed=seed, robot=robot)
     from tangy_sim.worlds.faulty_world import FaultyWorld
 
-    return FaultyWorld(activity, people, seed=seed, injections=injections)
+    return FaultyWorld(activity, people, seed=seed, injections=injections, robot=robot)
 
 
 def teaching_world(activity: Activity, shown: Demonstration, store: Store) -> World:

@@ -227,7 +227,7 @@ class Workspace(Participants):
         to_come = [read_injection(text) for text in injections]
         seed = self.game_seed(seed)
         if world is None:
-            world = game_world(self.activity, list(self.names), seed, to_come, live)
+            world = game_world(self.activity, list(self.names), seed, to_come, live, self.robot)
         supervision = Supervision(
             self._facilitation(world, policy, seed, asks),
             load_faults(self.robot),

@@ -14,6 +14,7 @@ from random import Random
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import FaultBook, Remedy
+from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.faulty_world import FaultyWorld
@@ -196,10 +197,11 @@ class InducingWorld(FaultyWorld):
         seed: int,
         plan: Sequence[Sequence[Planned]] = (),
         preferences: Preferences | None = None,
+        robot: Robot | None = None,
     ) -> None:
         self.inducer = Inducer(plan)
         self._made = False
-        super().__init__(activity, people, seed=seed, preferences=preferences)
+        super().__init__(activity, people, seed=seed, preferences=preferences, robot=robot)
         self._made = True
 
     @property

@@ -81,7 +81,9 @@ def play(settings: Settings, case: Case) -> dict[str, Any]:
     activity = activity_of(settings["activity"])
     number = seed * 1_000_000 + first
     with supervised(course) as workspace:
-        world = InducingWorld(activity, people_of(workspace), seed=number, plan=plan)
+        world = InducingWorld(
+            activity, people_of(workspace), seed=number, plan=plan, robot=workspace.robot
+        )
         return play_games(workspace.games(world, number), world.inducer, first, some)
 
 

@@ -221,7 +221,7 @@ class DrillSimulator:
             Path(folder)
         ) as store, store.transaction():  # fmt: skip
             facilitation = Facilitation(
-                FaultyWorld(self.activity, ids, seed=seed),
+                FaultyWorld(self.activity, ids, seed=seed, robot=self.robot),
                 policy,
                 Persuasion(ids, strategies, Random(f"{seed}/persuasion")),
                 store,

@@ -30,11 +30,12 @@ from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
+from tangy_profiles.robot import Robot
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import EVERYBODY, ActivityState, Outcome, Response, UnclearAnswer
 from tangy_sim.worlds.clarity import Clarity
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
-from tangy_sim.worlds.devices import WELL
+from tangy_sim.worlds.devices import well
 from tangy_sim.worlds.users import load_users
 
 SECONDS_A_WORD = 0.4  # s
@@ -58,6 +59,7 @@ class DeclaredWorld:
         seed: int,
         preferences: Preferences | None = None,
         unclear: float = 0.0,
+        robot: Robot | None = None,
     ) -> None:
         """Create the room.
 
@@ -67,7 +69,9 @@ class DeclaredWorld:
             seed: seed of the random generators.
             preferences: each person's probability of complying with each strategy.
             unclear: probability that an answer to be judged is unclear.
+            robot: the robot whose devices `health` reports; None: all simulated devices.
         """
+        self._well = well(robot)
         self.activity: Activity = activity
         self._declaration = activity.declaration
         self.people = tuple(people)
@@ -179,7 +183,7 @@ class DeclaredWorld:
 
     def health(self) -> Health:
         """Return the readings of devices without faults."""
-        return WELL
+        return self._well
 
     def recover(self, remedy: Remedy) -> float:
         """Do nothing, in 0 s: there are no faults to recover from."""

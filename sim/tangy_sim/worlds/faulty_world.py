@@ -14,6 +14,7 @@ from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.effects import ABOUT_CARD, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health
+from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.compliance import Preferences
@@ -52,10 +53,13 @@ class FaultyWorld(OccasionWorld):
         users: UserModel | None = None,
         preferences: Preferences | None = None,
         injections: Sequence[Injection] = (),
+        robot: Robot | None = None,
     ) -> None:
         self.injections = tuple(injections)
         self._chance = Random(f"{seed}/faults").random
-        super().__init__(activity, people, seed=seed, users=users, preferences=preferences)
+        super().__init__(
+            activity, people, seed=seed, users=users, preferences=preferences, robot=robot
+        )
 
     def begin(self) -> ActivityState:
         """Begin a game without active faults."""
@@ -267,7 +271,7 @@ class FaultyWorld(OccasionWorld):
         key = tuple(fault.kind.name for _, fault in showing)
         if self._health is None or self._health[:2] != (self._now, key):
             told = [(symptom, self.seconds - fault.since) for symptom, fault in showing]
-            self._health = (self._now, key, readings(told))
+            self._health = (self._now, key, readings(told, self._well))
         return self._health[2]
 
     def recover(self, remedy: Remedy) -> float:

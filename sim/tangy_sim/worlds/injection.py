@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_sim.worlds.devices import Symptom, dead, lasting, otherwise, silent
+from tangy_sim.worlds.devices import READINGS, Symptom, dead, lasting, otherwise, silent
 
 AT_ONCE = "at once"
 DRIVING = "driving"
@@ -47,8 +47,7 @@ _KINDS = (
     Kind("emergency-stop", "somebody presses the emergency stop", "emergency-stop", AT_ONCE,
          otherwise("stop_button", latched=True), holds=True, stops=True),
     Kind("link-lost", "nothing is heard from the robot", "link-lost", AT_ONCE,
-         silent("link", "stop_button", "laser", "base", "localisation", "navigator", "camera",
-                "requests", "voice", "screen", "arms"), holds=True, blinds=True, stops=True),
+         silent(*READINGS), holds=True, blinds=True, stops=True),
     Kind("laser-disconnected", "the laser scanner's cable comes off", "laser-disconnected",
          AT_ONCE, silent("laser"), holds=True, stops=True),
     Kind("laser-occluded", "a coat hangs over the laser scanner", "laser-occluded", AT_ONCE,

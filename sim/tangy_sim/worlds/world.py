@@ -20,11 +20,12 @@ from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.planned_game import PlannedGame
+from tangy_profiles.robot import Robot
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
-from tangy_sim.worlds.devices import WELL
+from tangy_sim.worlds.devices import well
 from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
 
 AGREEING, MORE_LOOKS = 3, 2
@@ -53,7 +54,9 @@ class SimulatedWorld(PlannedGame):
         seed: int,
         users: UserModel | None = None,
         preferences: Preferences | None = None,
+        robot: Robot | None = None,
     ) -> None:
+        self._well = well(robot)
         self.activity = activity
         self.own_deck = activity.deck
         self.people = tuple(people)
@@ -160,7 +163,7 @@ class SimulatedWorld(PlannedGame):
 
     def health(self) -> Health:
         """Return the readings of devices without faults (see `FaultyWorld`)."""
-        return WELL
+        return self._well
 
     def recover(self, remedy: Remedy) -> float:
         """Do nothing, in 0 s: there are no faults to recover from."""
