@@ -36,6 +36,16 @@ async def test_people_beyond_the_last_line_are_counted_and_scrolled_to(run: Run)
         assert not panel.border_subtitle
 
 
+async def test_facts_below_the_last_line_are_not_counted_as_people(run: Run) -> None:
+    people = [(f"Person {number:02}", "no visit yet", "text") for number in range(12)]
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.styles.height = 5
+        panel.show("B7", "Next: call number.", ["1:01 so far", "a call every 30 s"], people)
+        await pilot.pause()
+        assert panel.border_subtitle == "12 more: ↓"
+
+
 async def test_a_few_people_need_no_count(run: Run) -> None:
     async with run(Panel(), size=(80, 24)) as pilot:
         panel = pilot.app.screen.query_one(StaffPanel)

@@ -391,7 +391,7 @@ class PlayScreen(PlayStaff):
         if self.control.stopped:
             return self._told(text.GOES_ON)
         if self._learning:
-            return "learning"
+            return text.DOES_WHAT_YOU_SAID
         if self.at_rest:
             return self._told(text.PLAYS_AGAIN) if self._supervision.games else ""
         return f"x{self._speed:g}" if self.control.going else "paused"

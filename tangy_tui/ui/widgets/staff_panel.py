@@ -122,6 +122,7 @@ class StaffPanel(RowView, can_focus=True):
         below = len(self._rows) - self._rows.height - self.scroll_offset.y
         last = len(self._people) % self._across or self._across
         count = (below - 1) * self._across + last if below > 0 else 0
+        count = min(count, len(self._people))  # facts may be below as well
         self.border_subtitle = more_words(count) if count else ""
 
     def _draw(self) -> None:
