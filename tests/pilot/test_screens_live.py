@@ -13,9 +13,10 @@ from textual.app import App
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.health import OK, Reading
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import EndGame, GoOn
+from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -141,14 +142,34 @@ async def test_a_claim_asks_whose_card_it_is_if_nobody_knows(
         assert (claim.record.person, claim.record.detail) == ("user3", "2")
 
 
+async def ended(pilot: TangyPilot) -> None:
+    """End the game by words, as staff do."""
+    await pilot.press("colon", *"end", "enter")
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+    await pilot.press("y")
+    await until_shown(pilot, lambda: live(pilot).at_rest)
+
+
+@pytest.mark.slow
+async def test_no_game_follows_one_that_staff_have_ended(
+    run: Run, program: Program, link: HeldLink, workspace: Workspace
+) -> None:
+    async with run(app=program, size=(80, 24)) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
+        await ended(pilot)
+        for _ in range(10):
+            await pilot.pause(0.05)
+        assert live(pilot).at_rest
+        assert len(list(workspace.store.events(GameBeginning))) == 1
+
+
 @pytest.mark.slow
 async def test_a_claim_after_the_end_of_a_game_is_answered(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(80, 24), notifications=True) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
-        live(pilot).control.apply(EndGame())
-        await until_shown(pilot, lambda: live(pilot).at_rest)
+        await ended(pilot)
         await pilot.press("colon", *"bingo 2", "enter")
         await until_shown(pilot, lambda: "There is no game now." in screen_text(pilot.app))
 

@@ -10,13 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.game_commands import (
-    GoOn,
-    OneStep,
-    Pause,
-    StaffNote,
-    StopRobot,
-)
+from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StaffNote, StopRobot
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import void_last
@@ -89,6 +83,7 @@ class PlayScreen(PlayStaff):
         self._past = past
         self.tally = Tally()
         self.skipping = False
+        self._played = 0  # the tally counts a game that staff end only a moment later
         self._ended = False  # whether staff chose to leave the game
         self._left = 0.0  # s left of a drive that STOP or a fault interrupted
         self._halted = False
@@ -225,11 +220,12 @@ class PlayScreen(PlayStaff):
     # ---------------------------------------------------------------------------------- game
 
     async def _play(self) -> None:
-        while self.tally.games < self.games:
+        while self._played < self.games:
             if not await self._may_begin():
                 return
             try:
                 await self._play_game()
+                self._played += 1
             except TangyError as error:  # logging failed, so pause
                 await self._hold(str(error))
             if self.control.joined:
