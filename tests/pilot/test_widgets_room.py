@@ -350,7 +350,7 @@ async def test_a_robot_moved_during_a_hold_walks_there_afterwards(
 
 
 @pytest.mark.parametrize("people", [9, 12])
-@pytest.mark.parametrize("width", [78, 118, 158])
+@pytest.mark.parametrize("width", [56, 76, 78, 118, 158])
 def test_each_table_of_a_hall_is_drawn_to_both_ends(people: int, width: int) -> None:
     room = load_room("hall")
     grid = Grid(room, people, plan(width, 8, people))

@@ -88,6 +88,10 @@ def plan(width: int, height: int, people: int = 4) -> RoomPlan:
     return RoomPlan(width, height, **rows, crowded=crowded)
 
 
+CARD = 3
+"""The width of a card on a table, in cells."""
+
+
 class Grid:
     """Maps metres to columns and rows: zoomed to the table, with a slot for each person."""
 
@@ -105,11 +109,17 @@ class Grid:
         self._depth = max(0.1, near - room.reach - room.front.y)
         self._near = near
         self._plan = plan
-        self.centres = [self.column(x) for x in seats]
+        self.centres = self._beside_ends([self.column(x) for x in seats])
         middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
         self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
         self.tables = [self._ends(table[0], table[2]) for table in tables or (room.table,)]
         self.front = self.column(room.front.x)
+
+    def _beside_ends(self, centres: list[int]) -> list[int]:
+        """Move the outer cards by a cell if they would hide the ends of their tables."""
+        first, last = 2, self._plan.width - 3
+        wide = all(b - a > CARD for a, b in pairwise(centres))
+        return [min(max(first, one), last) for one in centres] if wide else centres
 
     def _ends(self, left: float, right: float) -> tuple[int, int]:
         """Return the end columns of a table (from and to in m), outside the cards on it."""
