@@ -7,24 +7,20 @@ best strategy's rate minus the chosen one's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import log
 from random import Random
 from typing import Any
 
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.extensions import extensions
+from tangy_profiles.persuading import PersuasionConfig, known_methods
 from tangy_sim.worlds.users import load_users
 from tangy_tui.experiments.estimates import summary
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
-from tangy_tui.interaction.methods import (
-    BayesUcb,
-    Counts,
-    EarlierPeople,
-    Forgetting,
-    Method,
-    Thompson,
-)
+from tangy_tui.interaction.methods import Counts, Method, Thompson, method_of
 
 HORIZONS = (23, 60, 300)
 """Interactions after which regret is reported; 20 games of the paper have 23."""
@@ -47,15 +43,22 @@ A_PIECE = 100
 Rates = tuple[float, ...]
 """One person's probability of complying with each strategy."""
 
-METHODS: Mapping[str, Callable[[Sequence[Counts]], Method]] = {
-    "thompson": lambda earlier: Thompson(),
-    "bayes_ucb": lambda earlier: BayesUcb(),
-    "thompson_prior": lambda earlier: EarlierPeople(Thompson(), earlier),
-    "bayes_ucb_prior": lambda earlier: EarlierPeople(BayesUcb(), earlier),
-    "thompson_forgetting": lambda earlier: Forgetting(Thompson(), KEEP),
-    "bayes_ucb_forgetting": lambda earlier: Forgetting(BayesUcb(), KEEP),
+METHODS: Mapping[str, PersuasionConfig] = {
+    "thompson": PersuasionConfig(),
+    "bayes_ucb": PersuasionConfig("bayes-ucb"),
+    "thompson_prior": PersuasionConfig(prior="people"),
+    "bayes_ucb_prior": PersuasionConfig("bayes-ucb", prior="people"),
+    "thompson_forgetting": PersuasionConfig(forgetting=KEEP),
+    "bayes_ucb_forgetting": PersuasionConfig("bayes-ucb", forgetting=KEEP),
 }
-"""The methods of the program; each factory takes the counts of earlier people."""
+"""The published comparison, by its names in the document; `compared` adds other methods."""
+
+
+def compared() -> dict[str, PersuasionConfig]:
+    """Return what is compared: `METHODS`, and all other known methods by their own names."""
+    there = {chosen.method for chosen in METHODS.values()}
+    others = [name for name in known_methods() if name not in there]
+    return {**METHODS, **{name: PersuasionConfig(name) for name in others}}
 
 
 @dataclass(frozen=True)
@@ -114,8 +117,9 @@ def meet(settings: Settings, case: Case) -> list[list[float]]:
     """
     crowd, name, first, count = case
     strategies, seed = settings["strategies"], settings["seed"]
-    earlier = earlier_people(crowd, strategies, seed) if name.endswith("_prior") else ()
-    method = METHODS[name](earlier)
+    chosen = compared()[name]
+    earlier = earlier_people(crowd, strategies, seed) if chosen.prior == "people" else ()
+    method = method_of(chosen, earlier)
     return [
         _met(CROWDS[crowd], method, person, Random(f"{seed}/{name}/{person}"), strategies, seed)
         for person in range(first, first + count)
@@ -216,25 +220,46 @@ def lai_robbins(best: float, others: Sequence[float]) -> float:
 
 
 def run(strategies: int, people: int, seed: int, where: Where) -> dict[str, Any]:
-    """Run every method on every crowd; the even crowd in full, the others with a quarter."""
-    settings = {"strategies": strategies, "seed": seed}
+    """Run every method on every crowd; the even crowd in full, the others with a quarter.
+
+    A method of another package that cannot be made is left out, and listed with its problem.
+    """
+    methods, problems = compared(), dict[str, str]()
+    for name in tuple(methods):
+        try:
+            method_of(methods[name])
+        except ProfileError as problem:
+            problems[name] = str(problem)
+            del methods[name]
+    settings: dict[str, Any] = {"strategies": strategies, "seed": seed}
+    added = {name: extensions("methods")[name].package for name in methods if _is_added(name)}
+    if added:  # their code is no part of the sweep's digest
+        settings["packages"] = added
     many = {"even": people, "uneven": -(-people // 4), "drifting": -(-people // 4)}
     cases = [
         (crowd, name, first, min(A_PIECE, many[crowd] - first))
         for crowd in CROWDS
-        for name in METHODS
+        for name in methods
         for first in range(0, many[crowd], A_PIECE)
     ]
     results = Sweep("algorithms", meet, settings, cases).run(where)
     met: dict[tuple[str, str], list[list[float]]] = {}
     for (crowd, name, _, _), rows in zip(cases, results, strict=True):
         met.setdefault((crowd, name), []).extend(rows)
+    rows = {
+        crowd: {
+            name: {"method": chosen.method, **_row(met[crowd, name])}
+            for name, chosen in methods.items()
+        }
+        for crowd in CROWDS
+    }
     users = load_users()
     factor = lai_robbins(users.preferred, [users.other] * (strategies - 1))
     return {
-        "algorithms": {name: _row(met["even", name]) for name in METHODS},
-        "uneven": {name: _row(met["uneven", name]) for name in METHODS},
-        "drifting": {name: _row(met["drifting", name]) for name in METHODS},
+        "algorithms": rows["even"],
+        "uneven": rows["uneven"],
+        "drifting": rows["drifting"],
+        "not_compared": problems,
         "lai_robbins": {
             "factor": factor,
             "regret": {str(horizon): factor * log(horizon) for horizon in HORIZONS},
@@ -246,6 +271,10 @@ def run(strategies: int, people: int, seed: int, where: Where) -> dict[str, Any]
         "earlier_people": EARLIER,
         "change": CHANGE,
     }
+
+
+def _is_added(name: str) -> bool:
+    return name in extensions("methods") and name not in METHODS
 
 
 def _row(people: Sequence[Sequence[float]]) -> dict[str, Any]:

@@ -171,11 +171,13 @@ def _methods(document: Document) -> Iterator[str]:
     crowds = document["crowds"]
     yield heading(words.METHODS)
     yield paragraph(words.REGRET)
+    for problem in document.get("not_compared", {}).values():
+        yield paragraph(words.not_compared(problem))
     named = [("even", "algorithms"), ("uneven", "uneven"), ("drifting", "drifting")]
     yield figure(
         figures.regrets(
             [(name, document[key]) for name, key in named],
-            words.METHOD_WORDS,
+            {name: words.method_words(name) for name in document["algorithms"]},
             document["lai_robbins"]["regret"],
         ),
         words.REGRET_CAPTION,
@@ -201,7 +203,7 @@ def _regret_table(methods: Document, first: Document, change: int) -> str:
         ),
         [
             (
-                words.METHOD_WORDS[name],
+                words.method_words(name),
                 *(
                     f"{number(row['regret'][h])} \N{PLUS-MINUS SIGN} {number(row['regret_se'][h])}"
                     for h in horizons

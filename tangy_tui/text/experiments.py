@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from tangy_tui.text.numbers import counted, number, percent
+from tangy_tui.text.people import method_name
 
 Document = Mapping[str, Any]
 """The JSON document of a scenario, or a part of it."""
@@ -165,6 +166,16 @@ def crowd_words(name: str, crowd: Document, n: int) -> str:
     means = crowd["means"]
     rates = f" (means {', '.join(f'{mean:g}' for mean in means)})" if means else ""
     return f"{name.capitalize()}: {crowd['words']}{rates}; n = {n}."
+
+
+def method_words(name: str) -> str:
+    """Return the words for a compared method, by its name in the document."""
+    return METHOD_WORDS.get(name) or method_name(name)
+
+
+def not_compared(problem: str) -> str:
+    """Tell which method of another package was left out, and why."""
+    return f"Not compared: {problem}"
 
 
 def prior_words(methods: Document) -> str:

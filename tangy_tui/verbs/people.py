@@ -12,6 +12,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
+from tangy_profiles.persuading import known_methods
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.text.names import (
     conflict_words,
@@ -20,6 +21,7 @@ from tangy_tui.text.names import (
     renamed,
     say_otherwise,
 )
+from tangy_tui.text.numbers import listed
 from tangy_tui.verbs.common import (
     REGISTERED,
     ActivityName,
@@ -219,8 +221,8 @@ def people_method(
         list[str],
         typer.Argument(
             metavar="WORDS...",
-            help="thompson or bayes-ucb; uniform or people (where beliefs begin); a share that is "
-            "kept, such as 0.98, with each interaction or day (1: all is kept). "
+            help=f"{listed(known_methods(), 'or')}; uniform or people (where beliefs begin); a "
+            "share that is kept, such as 0.98, with each interaction or day (1: all is kept). "
             "Options you leave out stay as they are. Or: default.",
         ),
     ],

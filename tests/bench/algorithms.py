@@ -16,7 +16,7 @@ from statistics import mean, stdev
 from time import perf_counter
 from typing import Any
 
-from tangy_tui.experiments.algorithms import CROWDS, HORIZONS, METHODS, meet
+from tangy_tui.experiments.algorithms import CROWDS, HORIZONS, compared, meet
 
 CROWD, STRATEGIES, SEED = "even", 4, 0
 
@@ -68,7 +68,7 @@ def main() -> None:
     print(f"{'':24}" + "".join(f"{f'T = {horizon}':>14}" for horizon in HORIZONS) + "  decisions/s")
     settings = {"strategies": STRATEGIES, "seed": SEED}
     rows: dict[str, Callable[[], list[list[float]]]] = {
-        name: partial(meet, settings, (CROWD, name, 0, people)) for name in METHODS
+        name: partial(meet, settings, (CROWD, name, 0, people)) for name in compared()
     }
     for name, make in mabwiser_policies().items():
         rows[name] = partial(_all_met_by, make, people)

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tangy_profiles.persuading import known_methods
 from tangy_tui.experiments import figures, published
 from tangy_tui.experiments.figures import INKS
 from tangy_tui.experiments.report import report
@@ -49,6 +50,7 @@ def test_the_document_has_its_agreed_keys(ran: Ran) -> None:
     assert {"mean", "sd"} <= set(document["suboptimal_before_convergence"])
     assert document["interactions_per_user_game"] > 0
     assert {"thompson", "bayes_ucb"} <= set(document["algorithms"])
+    assert {row["method"] for row in document["algorithms"].values()} == set(known_methods())
     for row in document["algorithms"].values():
         assert list(row["regret"]) == ["23", "60", "300"]
         assert share(row["optimal_share"])

@@ -132,6 +132,13 @@ def test_priors_help_for_similar_people_and_forgetting_for_changing_ones() -> No
     )
 
 
+def test_every_known_method_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert list(algorithms.compared()) == list(algorithms.METHODS)
+    monkeypatch.setattr(algorithms, "known_methods", lambda: ("thompson", "bayes-ucb", "turns"))
+    assert list(algorithms.compared()) == [*algorithms.METHODS, "turns"]
+    assert algorithms.compared()["turns"].method == "turns"
+
+
 def test_earlier_people_are_reproducible() -> None:
     met = algorithms.earlier_people("uneven", 4, SEED)
     assert len(met) == algorithms.EARLIER

@@ -333,10 +333,9 @@ def test_each_method_has_an_implementation_and_words() -> None:
     from tangy_tui.text import people
 
     assert set(people.METHODS) == set(METHODS)
-    assert {method_of(PersuasionConfig(name)).words for name in METHODS} == {
-        "Thompson sampling",
-        "Bayes-UCB",
-    }
+    made = {method_of(PersuasionConfig(name)).words for name in METHODS}
+    assert len(made) == len(METHODS), "two methods have the same words"
+    assert {"Thompson sampling", "Bayes-UCB"} <= made
 
 
 def test_an_unknown_method_is_refused() -> None:

@@ -189,3 +189,18 @@ def test_a_method_of_another_package_can_be_chosen_for_a_person(
     assert "each in turn" in shown.stdout
     without = tangy(Path(sys.executable), "people", "show", "user1", "--data", tmp_path)
     assert without.returncode == 0 and "turns" in without.stderr
+
+
+def test_a_method_of_another_package_is_named_and_compared(installed: Path, tmp_path: Path) -> None:
+    told = tangy(installed, "people", "method", "--help")
+    assert all(name in told.stdout for name in ("thompson", "bayes-ucb", "turns"))
+    page = tmp_path / "page.html"
+    chosen = ("--people", 8, "--json", "--jobs", 1, "--report", page, "--data", tmp_path)
+    done = tangy(installed, "experiment", "2", *chosen)
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert set(document["not_compared"]) == {"half", "gone"}
+    for crowd in ("algorithms", "uneven", "drifting"):
+        assert document[crowd]["turns"]["method"] == "turns"
+        assert document[crowd]["turns"]["n"] == document[crowd]["thompson"]["n"]
+    assert "turns" in page.read_text(encoding="utf-8")
