@@ -46,6 +46,8 @@ FAULT_COLUMNS = ("when", "what", "what came of it")
 NOT_REACHED = "not reached"
 FEW_WAITS = 3
 """Up to so many waits are told one by one."""
+LONGEST_STEP = 3600.0
+"""No behaviour takes longer, in s."""
 LONG_WAIT = 300.0  # s from which a wait needs attention
 STAFF_MOVES: Mapping[MoveKind, str] = {
     "acknowledged": "saw",
@@ -314,11 +316,16 @@ def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, s
         elif isinstance(what, Done) and what.teacher:
             whom = what.target or ""
             if answered != (what.behaviour, whom):  # after staff took over
-                lasted = 0.0 if replay.game.world == SIMULATED else what.over - what.begun
-                begun = at - timedelta(seconds=lasted)
                 words = _answer_words(replay.activity, what.behaviour, whom, name)
-                yield begun, what.teacher, words, False
+                yield at - _lasted(what, replay), what.teacher, words, False
             answered = ("", "")
+
+
+def _lasted(done: Done, replay: GameReplay) -> timedelta:
+    """Return how long a behaviour took by the time of day; zero if the log cannot tell."""
+    seconds = done.over - done.begun
+    real = replay.game.world != SIMULATED and 0.0 <= seconds <= LONGEST_STEP
+    return timedelta(seconds=seconds if real else 0.0)
 
 
 def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple[str, str] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import timedelta
 from typing import cast
 
@@ -11,7 +12,7 @@ import pytest
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import ALONE
-from tangy_profiles.game_records import FaultDiagnosed, FaultMove
+from tangy_profiles.game_records import FaultDiagnosed, FaultMove, GameStep
 from tangy_tui.app.game_commands import TAKEN_OVER
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -180,3 +181,16 @@ def test_the_report_tells_what_staff_answered(
     (row,) = staff_rows([replay], lambda person: f"<{person}>")
     assert row[1] == "Nina"
     assert drive.question in row[2] and "<user2>" in row[2]
+
+
+@pytest.mark.parametrize("seconds", [9e11, -9e11])
+def test_a_damaged_duration_does_not_break_the_report(
+    workspace: Workspace, learnt: Policy, seconds: float
+) -> None:
+    game, *_ = live_game(workspace, learnt)
+    store, activity = workspace.store, workspace.activity
+    done = store.last(GameStep)
+    assert done is not None and game.steps
+    store.append(replace(done.record, teacher="Nina", seconds=seconds, clock=None))
+    (replay,) = read_replays(store, read_games(store), {activity.name: activity}, {})
+    assert [who for _, who, _ in staff_rows([replay], str)] == ["Nina"]
