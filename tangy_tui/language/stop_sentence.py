@@ -3,8 +3,9 @@
 The rules know the verbs of stopping, and look at their objects. These stop the robot: no object
 ("stop"), the robot, its movements, the game, and how quickly ("stop right away"). These do not:
 actions of people ("stop teasing her"), other things ("stop the music"), places ("stop at the
-table"), negations ("don't stop") and reports ("the rain has stopped"). Sentences without such a
-verb ("that'll do now") are judged by what was learnt (`stop_likelihood`). If in doubt the robot
+table"), negations ("don't stop") and reports ("the rain has stopped"). What was learnt
+(`stop_likelihood`) judges sentences without such a verb ("that'll do now"), and those with one
+that the rules do not know ("please to stop now"), if it is almost certain. If in doubt the robot
 stops, because a stopped robot hurts nobody.
 """
 
@@ -60,8 +61,11 @@ TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immedi
 """Words whose misspellings are corrected."""
 SAME_WORD = 0.7  # similarity from which an unknown word counts as a misspelling
 LIKELY = 0.6  # likelihood from which words without a verb of stopping stop the robot
-FEWEST = 3  # words that such a sentence has; fewer are mostly commands to the program
-_VERB = re.compile(r"\b(?:stop|halt)")  # what the rules judge alone
+ALMOST_CERTAIN = 0.95  # likelihood from which words with one do that the rules do not know
+# Both were chosen with each written set left out of the training once.
+FEWEST, MOST = 3, 30  # words of what is judged so; fewer are mostly commands to the program
+_VERB = re.compile(r"\b(?:stop|halt)")
+_NEGATED = re.compile(r"(?:\bnot|nt|\bnever)(?: \w+){0,2} (?:stop|halt)")  # "dont ever stop"
 _PAUSES = re.compile(r"[.!?;:,\n\u2026\u2013\u2014]+|\s-+\s")
 _CLEAR = re.compile(r"\b(?:robot|machine|game|emergency stop|stop tangy)$")
 _DRAWN_OUT = re.compile("s+t+o+p+")
@@ -79,10 +83,11 @@ def stops(text: str, game: Collection[str] = ()) -> bool:
     if stops_by_rules(text, game):
         return True
     whole = _joined(words_of(text))
-    judged_by_rules = _VERB.search(whole) or len(whole.split(" ")) < FEWEST
-    if judged_by_rules or steering_of(text) is not None or yes_or_no(text) is not None:
+    by_rules_alone = not FEWEST <= len(whole.split(" ")) <= MOST or _NEGATED.search(whole)
+    if by_rules_alone or steering_of(text) is not None or yes_or_no(text) is not None:
         return False
-    return likelihood(text, game) >= LIKELY
+    needed = ALMOST_CERTAIN if _VERB.search(whole) else LIKELY
+    return likelihood(text, game) >= needed
 
 
 def stops_by_rules(text: str, game: Collection[str] = ()) -> bool:

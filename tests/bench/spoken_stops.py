@@ -45,6 +45,7 @@ HERE = Path(__file__).parent
 FILES = {
     "fresh": "stop_fresh.toml",
     "held": "stop_held.toml",
+    "held-second": "stop_held_second.toml",
     "development": "stop_development.toml",
 }
 FESTIVAL = {"kal_diphone": "kal_diphone", "slt_hts": "cmu_us_slt_arctic_hts"}
