@@ -6,7 +6,6 @@ come out. Every verified step is logged before its event is returned.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -15,7 +14,6 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
-from tangy_profiles.process_log import serving
 from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import (
     DemonstrationBegun,
@@ -26,6 +24,7 @@ from tangy_profiles.teaching_records import (
 )
 from tangy_tui.language.commands import Learnt, Phrasebook
 from tangy_tui.learning.announcements import Announcements
+from tangy_tui.learning.command_log import CommandLog
 from tangy_tui.learning.conflicts import DemonstratedStep
 from tangy_tui.learning.editing import Editor, NotPossible, new_id
 from tangy_tui.learning.game_replay import (
@@ -68,8 +67,6 @@ from tangy_tui.learning.verification import (
     Verifier,
 )
 from tangy_tui.world import World
-
-_LOG = logging.getLogger(__name__)
 
 NOTHING_SAID = "(nothing: there are no numbers to say)"
 
@@ -116,6 +113,7 @@ class TeachingSession:
         self._undone: list[Step] = []
         self.rules = StepRules(activity, store)
         self._announcements, self._logged = Announcements(), False
+        self._commands = CommandLog()
         self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
 
@@ -188,10 +186,9 @@ class TeachingSession:
 
     def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
         """Carry out one command of the teacher and return the events."""
-        with serving():
+        with self._commands.carrying_out(command):
             events = self._heed(command)
-            followed = ", ".join(type(event).__name__ for event in events)
-            _LOG.info("teaching: %s -> %s", type(command).__name__, followed)
+            self._commands.followed(command, events)
         return events
 
     def _heed(self, command: TeacherCommand) -> list[TeachingEvent]:
