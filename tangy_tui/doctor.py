@@ -107,8 +107,8 @@ def _extensions() -> Iterator[Finding]:
         path = activity_files().get(one.name)
         if path is None:
             return machine.no_activity(one.value, one.name)
-        read_activity(path)
-        return ""
+        named = read_activity(path).name
+        return "" if named == one.name else machine.other_name(path.name, named)
 
     def method(one: Extension) -> str:
         added_method(one)

@@ -147,7 +147,16 @@ def _alternatives(
         conditions: list[Condition] = []
         for key in alternative:
             if key not in known:
-                raise alternative.wrong(key, f"is no evidence; {nearest(key, known)}")
+                meant = nearest(key, known)
+                device, fact = _undeclared(key, devices)
+                if not fact:
+                    raise alternative.wrong(key, f"is no evidence; {meant}")
+                close = f"{meant} Otherwise no" if meant.endswith("?") else "no"
+                raise alternative.wrong(
+                    key,
+                    f"is no evidence; {close} device declares the fact {fact!r}; add facts.{fact} "
+                    f"to {device} in the robot's file.",
+                )
             test = alternative.table(key)
             words = list(test)
             if len(words) != 1 or words[0] not in _TESTS:
@@ -162,6 +171,12 @@ def _alternatives(
     if not found:
         raise entry.wrong("when", "must hold at least one alternative.")
     return tuple(found)
+
+
+def _undeclared(key: str, devices: Mapping[str, DeviceProfile]) -> tuple[str, str]:
+    """Return the device and the fact of unknown evidence; two "" if it names no device."""
+    device, _, fact = key.partition(".")
+    return (device, fact) if device in devices and fact else ("", "")
 
 
 def _never(condition: Condition, devices: Mapping[str, DeviceProfile]) -> str:

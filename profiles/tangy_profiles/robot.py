@@ -292,7 +292,9 @@ def _drivers(top: Table, devices: Mapping[str, DeviceProfile]) -> dict[str, Driv
     table = top.table("drivers", optional=True)
     for name, entry in table.items():
         if name not in devices:
-            raise table.wrong(name, f"is no device of this robot; {nearest(name, devices)}")
+            entry_for = f"add a [[devices]] entry named {name!r}"
+            problem = f"is no device of this robot: {entry_for}; {nearest(name, devices)}"
+            raise table.wrong(name, problem)
         settings = {key: entry.word_or_number(key) for key in entry if key != "kind"}
         drivers[name] = Driver(entry.text("kind"), MappingProxyType(settings))
     return drivers

@@ -13,6 +13,11 @@ def no_activity(package: str, name: str) -> str:
     return f"{package} has no {name}.toml."
 
 
+def other_name(file: str, name: str) -> str:
+    """Tell that an activity's file has another name than the activity in it."""
+    return f"{file} says name = {name!r}: give both the same name, that no other activity has."
+
+
 def usable(package: str) -> str:
     """Tell that an extension package can be used."""
     return f"of {package} can be used."

@@ -252,6 +252,13 @@ def test_a_verb_names_a_damaged_row_and_continues(
 
 
 @pytest.mark.slow
+def test_the_log_of_every_kind_has_an_event_of_every_kind(every_kind: Path) -> None:
+    with Store.open(every_kind, write=False) as store:
+        missing = kinds().keys() - store.kinds().keys()
+    assert not missing, "let tests/support/every_kind.py write them"
+
+
+@pytest.mark.slow
 def test_doctor_and_store_check_name_every_bad_row(every_kind: Path, tangy: Tangy) -> None:
     assert tangy("store", "check", "--data", every_kind).returncode == 0
     step, fault = seqs(every_kind, "demonstration step")[7], seqs(every_kind, "fault")[1]

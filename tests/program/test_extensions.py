@@ -84,6 +84,7 @@ static = tangy_radio.driver:NO_KIND
 [tangy.activities]
 lotto = tangy_radio
 keno = tangy_radio
+tombola = tangy_radio
 [tangy.methods]
 turns = tangy_radio.turns:Turns
 half = tangy_radio.turns:Half
@@ -100,6 +101,7 @@ def wheel(folder: Path) -> Path:
         "tangy_radio/driver.py": RADIO,
         "tangy_radio/turns.py": TURNS,
         "tangy_radio/lotto.toml": lotto.replace('name = "bingo"', 'name = "lotto"', 1),
+        "tangy_radio/tombola.toml": lotto,
         f"{info}/METADATA": "Metadata-Version: 2.1\nName: tangy-radio\nVersion: 1.2\n",
         f"{info}/WHEEL": "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
         f"{info}/entry_points.txt": POINTS,
@@ -150,6 +152,7 @@ def test_doctor_lists_extensions_and_their_problems(installed: Path, tmp_path: P
         ("driver scip", "this name is taken; ours is used."),
         ("driver static", "is not a DriverKind"),
         ("activity keno", "has no keno.toml"),
+        ("activity tombola", "name = 'bingo'"),
         ("method of persuasion half", "has no forgets"),
         ("method of persuasion gone", "cannot be loaded"),
     ):
