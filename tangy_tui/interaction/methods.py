@@ -22,13 +22,13 @@ from tangy_profiles.reading import plain
 Counts = Mapping[str, tuple[int, int]]
 """One person's responses: strategy -> how often they complied, and did not."""
 
-MOST_LENT = 4
+MAX_PRIOR_WEIGHT = 4
 """The most weight of earlier people's prior, in responses per strategy.
 
 A wrong prior of this weight costs 7 of 23 choices; one without a limit is never corrected.
 """
 
-STEPS_LENT = 4
+GRID_STEPS = 4
 """The prior is fitted in steps of a quarter response."""
 
 
@@ -137,7 +137,7 @@ class EarlierPeople:
         for strategy in prior:
             if strategy not in self.fitted:
                 counts = (p[strategy] for p in self.people if strategy in p)
-                self.fitted[strategy] = lent([c for c in counts if sum(c)])
+                self.fitted[strategy] = fit_beta_prior([c for c in counts if sum(c)])
             if self.fitted[strategy].counts is not None:
                 prior[strategy] = self.fitted[strategy]
         return prior
@@ -244,7 +244,7 @@ def others(counts: Mapping[tuple[str, str], tuple[int, int]], person: str) -> li
     return list(grouped.values())
 
 
-def lent(counts: Sequence[tuple[int, int]]) -> Beta:
+def fit_beta_prior(counts: Sequence[tuple[int, int]]) -> Beta:
     """Fit the prior of one strategy to earlier people's counts (complied, did not).
 
     It is Beta(1 + u, 1 + v): the uniform prior with u + v pseudo-responses. u and v maximise the
@@ -252,13 +252,13 @@ def lent(counts: Sequence[tuple[int, int]]) -> Beta:
     what worked. u + v is at most four, and at most the number of people, because one person says
     little about the next.
     """
-    most = min(MOST_LENT, len(counts)) * STEPS_LENT
+    most = min(MAX_PRIOR_WEIGHT, len(counts)) * GRID_STEPS
     if not most:
         return Beta()
-    grid = [n / STEPS_LENT for n in range(most + 1)]
-    yes = _rising([y for y, _ in counts], [1 + u for u in grid])
-    no = _rising([n for _, n in counts], [1 + v for v in grid])
-    both = _rising([y + n for y, n in counts], [2 + w for w in grid])
+    grid = [n / GRID_STEPS for n in range(most + 1)]
+    yes = log_rising_factorials([y for y, _ in counts], [1 + u for u in grid])
+    no = log_rising_factorials([n for _, n in counts], [1 + v for v in grid])
+    both = log_rising_factorials([y + n for y, n in counts], [2 + w for w in grid])
     u, v = max(
         ((u, v) for u in range(most + 1) for v in range(most + 1 - u)),
         key=lambda pair: yes[pair[0]] + no[pair[1]] - both[pair[0] + pair[1]],
@@ -266,7 +266,7 @@ def lent(counts: Sequence[tuple[int, int]]) -> Beta:
     return Beta(1 + grid[u], 1 + grid[v], (0, 0))
 
 
-def _rising(times: Sequence[int], starts: Sequence[float]) -> list[float]:
+def log_rising_factorials(times: Sequence[int], starts: Sequence[float]) -> list[float]:
     """Return, for each start a, the log of the product over n in `times` of a (a+1) ... (a+n-1)."""
     return [sum(math.lgamma(a + n) for n in times) - len(times) * math.lgamma(a) for a in starts]
 

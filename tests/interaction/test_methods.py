@@ -26,13 +26,13 @@ from tangy_profiles.persuading import (
 from tangy_profiles.reading import Table
 from tangy_tui.interaction.memory import counted
 from tangy_tui.interaction.methods import (
-    MOST_LENT,
+    MAX_PRIOR_WEIGHT,
     BayesUcb,
     EarlierPeople,
     Forgetting,
     Method,
     Thompson,
-    lent,
+    fit_beta_prior,
     method_of,
     others,
 )
@@ -161,16 +161,16 @@ def test_bayes_ucb_uses_no_random_numbers() -> None:
 def test_the_prior_from_earlier_people_is_worth_at_most_four_responses(
     counts: list[tuple[int, int]],
 ) -> None:
-    prior = lent(counts)
+    prior = fit_beta_prior(counts)
     worth = prior.alpha + prior.beta - 2
-    assert 0 <= worth <= min(MOST_LENT, len(counts))
+    assert 0 <= worth <= min(MAX_PRIOR_WEIGHT, len(counts))
     assert prior.alpha >= 1
     assert prior.beta >= 1
     assert prior.trials == 0
 
 
 def test_the_prior_without_earlier_people_is_uniform() -> None:
-    assert lent([]) == Beta()
+    assert fit_beta_prior([]) == Beta()
     for people in ([], [{"plain": (0, 0)}], [{"unheard of": (3, 1)}]):
         assert EarlierPeople(Thompson(), people).prior(STRATEGIES) == uniform_beliefs(STRATEGIES)
 
@@ -186,7 +186,7 @@ def test_the_lent_prior_maximises_the_likelihood_of_the_counts(
 
         return sum(log_beta(alpha + y, beta + n) - log_beta(alpha, beta) for y, n in counts)
 
-    prior, most = lent(counts), 4 * min(MOST_LENT, len(counts))
+    prior, most = fit_beta_prior(counts), 4 * min(MAX_PRIOR_WEIGHT, len(counts))
     best = max(
         likelihood(1 + u / 4, 1 + v / 4) for u in range(most + 1) for v in range(most + 1 - u)
     )
@@ -199,11 +199,11 @@ def test_a_strategy_that_worked_with_everybody_has_a_high_prior() -> None:
     assert prior["warm"].mean > 0.7
     assert prior["plain"].mean < 0.45
     assert prior["brisk"] == Beta()
-    assert prior["warm"].alpha + prior["warm"].beta == 2 + MOST_LENT
+    assert prior["warm"].alpha + prior["warm"].beta == 2 + MAX_PRIOR_WEIGHT
 
 
 def test_five_own_responses_outweigh_any_prior() -> None:
-    prior = lent([(50, 0)] * 40)
+    prior = fit_beta_prior([(50, 0)] * 40)
     for _ in range(5):
         prior = prior.updated(False)
     assert prior.mean < 0.5
