@@ -63,10 +63,10 @@ class Method(Protocol):
 
 
 METHOD_PARTS = ("words", "forgets", "prior", "faded", "updated", "scores")
-"""The attributes of a method; `Plain` has all of them except `words` and `scores`."""
+"""The attributes of a method; `BetaBernoulliMethod` has all except `words` and `scores`."""
 
 
-class Plain:
+class BetaBernoulliMethod:
     """The paper's prior and update: Beta(1, 1), and Eq. 2 for each response."""
 
     forgets = False
@@ -84,7 +84,7 @@ class Plain:
         return {**beliefs, strategy: beliefs[strategy].updated(complied)}
 
 
-class Thompson(Plain):
+class Thompson(BetaBernoulliMethod):
     """Thompson sampling: sample every belief, use the strategy with the highest sample."""
 
     words = "Thompson sampling"
@@ -95,7 +95,7 @@ class Thompson(Plain):
         return {strategy: draw(b.alpha, b.beta) for strategy, b in beliefs.items()}
 
 
-class BayesUcb(Plain):
+class BayesUcb(BetaBernoulliMethod):
     """Use the strategy whose belief has the highest upper quantile.
 
     The quantile is 1 - 1/(t + 1) before the t-th response (Kaufmann, Cappe, Garivier 2012, with c =

@@ -62,10 +62,10 @@ NO_KIND = "radio"
 TURNS = '''
 """A method that uses the strategies in turn."""
 
-from tangy_tui.interaction.methods import Plain
+from tangy_tui.interaction.methods import BetaBernoulliMethod
 
 
-class Turns(Plain):
+class Turns(BetaBernoulliMethod):
     words = "each in turn"
 
     def scores(self, beliefs, rng):

@@ -95,15 +95,15 @@ def test_the_recipe_for_a_method_of_persuasion_works(copy: Path, taught: Path) -
     edit(copy / names, '["thompson", "bayes-ucb"]', '["thompson", "bayes-ucb", "turns"]')
     edit(
         copy / methods,
-        "class BayesUcb(Plain):",
-        """class Turns(Plain):
+        "class BayesUcb(BetaBernoulliMethod):",
+        """class Turns(BetaBernoulliMethod):
     words = "each in turn"
 
     def scores(self, beliefs, rng):
         return {name: -float(belief.trials) for name, belief in beliefs.items()}
 
 
-class BayesUcb(Plain):""",
+class BayesUcb(BetaBernoulliMethod):""",
     )
     edit(
         copy / methods,
