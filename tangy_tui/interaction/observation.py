@@ -13,13 +13,13 @@ from typing import Protocol, runtime_checkable
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_tui.interaction.reading_error import FusedLook, ReadingError
+from tangy_tui.interaction.reading_error import FusedLook, ReaderErrorRate
 from tangy_tui.world import World
 
 ACQUITS = 2
 """Looks that have to agree with the expectation.
 
-How many have to agree against it depends on how often a look is wrong (`ReadingError.needed`): four
+How many have to agree against it depends on how often a look is wrong (`ReaderErrorRate.needed`): four
 if 5% of all looks are wrong.
 """
 
@@ -38,21 +38,21 @@ class FusesLooks(Protocol):
 class Observation:
     """Observes the state of a game; call `begin` for each game."""
 
-    def __init__(self, world: World, error: ReadingError | None = None) -> None:
+    def __init__(self, world: World, error: ReaderErrorRate | None = None) -> None:
         """Observe a world; `error` counts how often earlier looks were wrong."""
         self._world = world
         self._last: ActivityState | None = None
-        self.error = error or ReadingError()
+        self.error = error or ReaderErrorRate()
         self.fused: FusedLook | None = None
         """The looks behind the last contradicting state; None if it rests on one look."""
-        self.counted = ReadingError()
+        self.counted = ReaderErrorRate()
         """The looks of this game alone."""
         self._fused_before = (0, 0)
 
     def begin(self, state: ActivityState) -> None:
         """Start a game with its first state."""
         self._last, self.fused = state, None
-        self.counted = ReadingError()
+        self.counted = ReaderErrorRate()
 
     def before(self, doubtful: Callable[[ActivityState], bool]) -> ActivityState:
         """Return the state before a behaviour; it should equal the state after the last one.

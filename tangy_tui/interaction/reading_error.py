@@ -26,7 +26,7 @@ all looks late, with four none in 1,000.
 
 
 @dataclass
-class ReadingError:
+class ReaderErrorRate:
     """Counts looks, and those outvoted by others of the same moment."""
 
     looks: int = 0
@@ -57,7 +57,7 @@ class FusedLook:
     rate: float
 
 
-def learnt_error(store: Store, activity: str, world: GameWorld) -> ReadingError:
+def learnt_error(store: Store, activity: str, world: GameWorld) -> ReaderErrorRate:
     """Read from the log how often looks were wrong in games of an activity.
 
     Args:
@@ -65,7 +65,7 @@ def learnt_error(store: Store, activity: str, world: GameWorld) -> ReadingError:
         activity: its name.
         world: only games of this world count, as a simulated camera says nothing about a real one.
     """
-    error, games = ReadingError(), set[str]()
+    error, games = ReaderErrorRate(), set[str]()
     for event in store.events(GameBeginning, GameEnding):
         match event.record:
             case GameBeginning(game=game, activity=name, world=where):

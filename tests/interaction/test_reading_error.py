@@ -15,7 +15,7 @@ from tangy_tui.interaction.reading_error import (
     LEAST,
     MOST,
     FusedLook,
-    ReadingError,
+    ReaderErrorRate,
     learnt_error,
 )
 from tangy_tui.monitoring.evidence import evidence_words
@@ -27,7 +27,7 @@ from tangy_tui.world import World
     [(0, 0, 4), (2000, 10, LEAST), (2000, 100, 4), (2000, 200, 5), (2000, 1900, MOST)],
 )
 def test_a_higher_error_rate_needs_more_agreeing_looks(looks: int, wrong: int, needed: int) -> None:
-    assert ReadingError(looks, wrong).needed == needed
+    assert ReaderErrorRate(looks, wrong).needed == needed
 
 
 def state(card: str) -> ActivityState:
@@ -83,5 +83,5 @@ def test_the_error_rate_is_stored_for_each_activity_and_world(workspace: Workspa
     play("b", "bingo", LIVE, 50, 1)
     play("c", "bingo", BENCH, 70, 70)
     play("d", "memory", LIVE, 30, 30)
-    assert learnt_error(store, "bingo", LIVE) == ReadingError(150, 6)
-    assert learnt_error(store, "bingo", SIMULATED) == ReadingError()
+    assert learnt_error(store, "bingo", LIVE) == ReaderErrorRate(150, 6)
+    assert learnt_error(store, "bingo", SIMULATED) == ReaderErrorRate()

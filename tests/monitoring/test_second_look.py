@@ -10,7 +10,7 @@ import pytest
 from tangy_profiles.state import ActivityState, Situation, UserState
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.observation import MORE_LOOKS, Observation
-from tangy_tui.interaction.reading_error import ReadingError
+from tangy_tui.interaction.reading_error import ReaderErrorRate
 from tangy_tui.learning.policy import Policy
 from tangy_tui.world import World
 from tests.support.games import codes, ended, moves, play
@@ -67,7 +67,7 @@ def test_a_contradiction_counts_only_after_a_second_look(
 
 def test_disagreeing_looks_are_bounded() -> None:
     _, taken = after(*(state(f"never {number}") for number in range(20)))
-    assert taken == ReadingError().needed + MORE_LOOKS
+    assert taken == ReaderErrorRate().needed + MORE_LOOKS
 
 
 @pytest.mark.slow
