@@ -13,7 +13,7 @@ from typing import Protocol, runtime_checkable
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_tui.interaction.reading_error import FusedLook, ReaderErrorRate
+from tangy_tui.interaction.reading_error import FusedObservation, ReaderErrorRate
 from tangy_tui.world import World
 
 ACQUITS = 2
@@ -28,7 +28,7 @@ MORE_LOOKS = 2
 
 
 @runtime_checkable
-class FusesLooks(Protocol):
+class ObservationFusion(Protocol):
     """A world that fuses looks at cards itself: how many must agree, and counts of the results."""
 
     agreeing: int
@@ -43,7 +43,7 @@ class Observation:
         self._world = world
         self._last: ActivityState | None = None
         self.error = error or ReaderErrorRate()
-        self.fused: FusedLook | None = None
+        self.fused: FusedObservation | None = None
         """The looks behind the last contradicting state; None if it rests on one look."""
         self.counted = ReaderErrorRate()
         """The looks of this game alone."""
@@ -107,14 +107,14 @@ class Observation:
         else:
             state = seen.most_common(1)[0][0]
         if look == self._look_again:
-            self.fused = FusedLook(seen[state], seen.total(), self.error.rate)
+            self.fused = FusedObservation(seen[state], seen.total(), self.error.rate)
             self._count(state, seen[state], seen.total())
         return state
 
     def _count_fused(self) -> None:
         """Count the looks that the world fused since the last call, and set how many must agree."""
         world = self._world
-        if isinstance(world, FusesLooks):
+        if isinstance(world, ObservationFusion):
             (taken, wrong), before = world.fused_looks, self._fused_before
             taken, wrong = taken - before[0], wrong - before[1]
             self._fused_before = world.fused_looks

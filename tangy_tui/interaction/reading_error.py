@@ -49,7 +49,7 @@ class ReaderErrorRate:
 
 
 @dataclass(frozen=True, slots=True)
-class FusedLook:
+class FusedObservation:
     """The result of fused looks: agreeing looks, all looks, and the error rate of one."""
 
     agreeing: int

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
 from tangy_profiles.health import ERROR, NEVER, OK, STALE, WARN, Fact
 from tangy_profiles.robot import Robot
-from tangy_tui.interaction.reading_error import FusedLook
+from tangy_tui.interaction.reading_error import FusedObservation
 from tangy_tui.learning.effects import Mismatch
 
 STATES = {OK: "working", STALE: "no data", ERROR: "failed", WARN: "warning"}
@@ -24,7 +24,7 @@ def evidence_words(
     mismatches: Sequence[Mismatch],
     robot: Robot,
     conditions: Iterable[Condition] = (),
-    looks: FusedLook | None = None,
+    looks: FusedObservation | None = None,
     label: Label = str,
 ) -> str:
     """Format evidence as one line: measurements, expectations and observations.

@@ -14,7 +14,7 @@ from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.reading_error import (
     LEAST,
     MOST,
-    FusedLook,
+    FusedObservation,
     ReaderErrorRate,
     learnt_error,
 )
@@ -63,7 +63,7 @@ def test_a_fused_look_counts_its_agreeing_looks() -> None:
 
 
 def test_a_diagnosis_includes_the_certainty_of_its_looks(workspace: Workspace) -> None:
-    words = evidence_words({}, (), workspace.robot, (), FusedLook(4, 5, 0.005))
+    words = evidence_words({}, (), workspace.robot, (), FusedObservation(4, 5, 0.005))
     assert "4 of 5" in words and "1 in 200" in words
 
 
