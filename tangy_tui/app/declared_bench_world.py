@@ -11,7 +11,7 @@ from tangy_profiles.declared.typed_observations import TypedObservation
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState
 from tangy_sim.worlds import injection
-from tangy_sim.worlds.injection import Kind
+from tangy_sim.worlds.injection import FaultKind
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 
 WITH_CARDS = {injection.LOOKING, injection.ASKING, injection.CLOSING, injection.MOVING_ON}
@@ -44,7 +44,7 @@ class BenchedDeclaredWorld(BenchedWorld, DeclaredLiveWorld):
             self.bench.do("rules", rows=[after.row])
         return super()._perform(action, whom)
 
-    def can_show(self, kind: Kind, action: Action) -> bool:
+    def can_show(self, kind: FaultKind, action: Action) -> bool:
         """Return whether a fault of this kind would be noticed if it came with an action."""
         return kind.shows not in WITH_CARDS and super().can_show(kind, action)
 

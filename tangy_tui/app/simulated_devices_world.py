@@ -29,7 +29,7 @@ from tangy_profiles.past_game import PastGame
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.device_simulator.tablet import Tablet
 from tangy_sim.worlds import injection
-from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.injection import KINDS, FaultKind, Injection
 from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_tui.app.device_simulator import BenchError, DeviceSimulator
@@ -196,7 +196,7 @@ class BenchedWorld(LiveWorld):
         if chosen.shows == injection.AT_ONCE and self.link.setup.stepped:
             self._let_show(chosen)
 
-    def _let_show(self, kind: Kind) -> None:
+    def _let_show(self, kind: FaultKind) -> None:
         """Wait until the devices show a fault; needed if the bench is stepped."""
         self._pass_until(lambda: kind.code in self.commands.diagnosed(self.health()))
 
@@ -220,7 +220,7 @@ class BenchedWorld(LiveWorld):
         if self._tablet is not None:
             self._tablet.on = "screen-dead" not in self.present
 
-    def can_show(self, kind: Kind, action: Action) -> bool:
+    def can_show(self, kind: FaultKind, action: Action) -> bool:
         """Return whether a fault of this kind would be noticed if it came with an action."""
         tracker, behaviour = self.tracker, action.behaviour
         beside = tracker.place in tracker.queue

@@ -18,7 +18,7 @@ from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_sim.worlds.injection import AT_ONCE, KINDS, MOVING_ON, WAITING, Kind
+from tangy_sim.worlds.injection import AT_ONCE, KINDS, MOVING_ON, WAITING, FaultKind
 
 LATEST = 30
 """The last step at which a fault may be planned; few games are shorter."""
@@ -34,7 +34,7 @@ NOT_BOTH = (("voice-dead", "screen-dead"), ("requests-silent", "request-withdraw
 class Planned:
     """A fault planned for some step of a game or later; `others` are kinds of its class."""
 
-    kind: Kind
+    kind: FaultKind
     step: int
     others: tuple[str, ...] = ()
 
@@ -43,7 +43,7 @@ class Planned:
 class Induced:
     """A fault that occurred, from its step to the step at which it was removed (None: never)."""
 
-    kind: Kind
+    kind: FaultKind
     step: int
     seconds: float
     lifted: int | None = None
@@ -57,7 +57,7 @@ class Induced:
         return not self.hidden and (not once or self.lifted is not None)
 
 
-def recovery_of(kind: Kind, book: FaultBook) -> str:
+def recovery_of(kind: FaultKind, book: FaultBook) -> str:
     """Return the right recovery for a kind: the first one of the rule for its code."""
     return book.rule(kind.code).recovery[0]
 
@@ -147,7 +147,11 @@ class Inducer:
             self.due = [*self.due, *self._left.pop(0)]
 
     def choose(
-        self, step: int, action: Action, there: Iterable[Kind], shows: Callable[[Kind], bool]
+        self,
+        step: int,
+        action: Action,
+        there: Iterable[FaultKind],
+        shows: Callable[[FaultKind], bool],
     ) -> str:
         """Return the kind of fault to induce with an action; "" if none.
 

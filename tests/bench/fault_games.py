@@ -14,7 +14,7 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.effects import DRIVES
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, Injection, Kind
+from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, FaultKind, Injection
 from tangy_tui.experiments.classroom import GUIDED, RANDOM, Course, activity_of
 from tangy_tui.experiments.induced import InducingWorld, recovery_of
 from tangy_tui.experiments.matching import RIGHT, match_faults
@@ -55,7 +55,7 @@ class AimingWorld(InducingWorld):
                 self.bring_about(name)
 
 
-def apart(kinds: Sequence[Kind], action: Action) -> bool:
+def apart(kinds: Sequence[FaultKind], action: Action) -> bool:
     """Return whether faults of several kinds stay distinguishable in the same action.
 
     A robot that cannot move never arrives, which hides other failures; and while the link is lost,

@@ -73,10 +73,10 @@ code = "arm-failed\"""",
     )
     edit(
         copy / kinds,
-        '    Kind("never-complies",',
-        """    Kind("screen-dim", "the chest screen goes dim", "screen-dim", AT_ONCE,
+        '    FaultKind("never-complies",',
+        """    FaultKind("screen-dim", "the chest screen goes dim", "screen-dim", AT_ONCE,
          otherwise("screen", brightness=0.1)),
-    Kind("never-complies",""",
+    FaultKind("never-complies",""",
     )
     assert "screen-dim" in tangy_on(copy, "play", "--inject", "help").stdout
     played = tangy_on(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tangy_sim.worlds.injection import KINDS, Kind
+from tangy_sim.worlds.injection import KINDS, FaultKind
 
 MUTE = ("voice-dead", "screen-dead")
 """Faults that end together when a lost connection returns."""
@@ -20,7 +20,7 @@ COMES_BACK = 0.5
 class SimulatedFault:
     """An active fault: its start (s), the person it concerns, and whether it has shown."""
 
-    kind: Kind
+    kind: FaultKind
     since: float
     person: str = ""
     shown: bool = False

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
 from tangy_sim.worlds import injection
-from tangy_sim.worlds.injection import Kind
+from tangy_sim.worlds.injection import FaultKind
 from tangy_sim.worlds.world import SimulatedWorld
 
 
@@ -15,7 +15,7 @@ from tangy_sim.worlds.world import SimulatedWorld
 class PresentFault:
     """An active fault: its start (s), the person it concerns, and whether it has shown."""
 
-    kind: Kind
+    kind: FaultKind
     since: float
     person: str | None = None
     shown: bool = False
@@ -27,7 +27,7 @@ class OccasionWorld(SimulatedWorld):
     present: dict[str, PresentFault]
     """Active faults by kind."""
 
-    def can_show(self, kind: Kind, action: Action) -> bool:
+    def can_show(self, kind: FaultKind, action: Action) -> bool:
         """Return whether a fault of a kind would show during an action."""
         tracker, behaviour = self.tracker, action.behaviour
         asked = tracker.place in tracker.queue

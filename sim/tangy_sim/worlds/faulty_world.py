@@ -20,7 +20,7 @@ from tangy_sim.worlds import injection
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.devices import readings
 from tangy_sim.worlds.fault_occasions import OccasionWorld, PresentFault
-from tangy_sim.worlds.injection import KINDS, Injection, Kind, silencing
+from tangy_sim.worlds.injection import KINDS, FaultKind, Injection, silencing
 from tangy_sim.worlds.injection_log import InjectionLog
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_sim.worlds.users import SimulatedUser, UserModel
@@ -101,12 +101,12 @@ class FaultyWorld(OccasionWorld):
         if kind == "requests-silent":
             self._hear()
 
-    def _set_in(self, kind: Kind, since: float) -> None:
+    def _set_in(self, kind: FaultKind, since: float) -> None:
         self.present[kind.name] = PresentFault(kind, since, self._whom(kind))
         self.came.append((self.tracker.step + 1, kind.name))
         self.injection_log.came(kind, self.tracker.step + 1, self.seconds)
 
-    def _whom(self, kind: Kind) -> str | None:
+    def _whom(self, kind: FaultKind) -> str | None:
         if kind.shows in (injection.LOOKING, injection.ASKING, injection.CLOSING):
             return self.tracker.state().attended
         return None

@@ -20,7 +20,7 @@ WAITING = "waiting"
 
 
 @dataclass(frozen=True)
-class Kind:
+class FaultKind:
     """A kind of fault: what happens in the room, and when it can show.
 
     `shows`: at once, in a device's readings; or only while the robot is driving, looking at a card,
@@ -44,53 +44,53 @@ class Kind:
 
 
 _KINDS = (
-    Kind("emergency-stop", "somebody presses the emergency stop", "emergency-stop", AT_ONCE,
+    FaultKind("emergency-stop", "somebody presses the emergency stop", "emergency-stop", AT_ONCE,
          otherwise("stop_button", latched=True), holds=True, stops=True),
-    Kind("link-lost", "nothing is heard from the robot", "link-lost", AT_ONCE,
+    FaultKind("link-lost", "nothing is heard from the robot", "link-lost", AT_ONCE,
          silent(*READINGS), holds=True, blinds=True, stops=True),
-    Kind("laser-disconnected", "the laser scanner's cable comes off", "laser-disconnected",
+    FaultKind("laser-disconnected", "the laser scanner's cable comes off", "laser-disconnected",
          AT_ONCE, silent("laser"), holds=True, stops=True),
-    Kind("laser-occluded", "a coat hangs over the laser scanner", "laser-occluded", AT_ONCE,
+    FaultKind("laser-occluded", "a coat hangs over the laser scanner", "laser-occluded", AT_ONCE,
          otherwise("laser", near_share=0.85), holds=True, helped=True),
-    Kind("camera-disconnected", "the head camera's cable comes off", "camera-disconnected",
+    FaultKind("camera-disconnected", "the head camera's cable comes off", "camera-disconnected",
          AT_ONCE, silent("camera"), blinds=True, stops=True),
-    Kind("camera-occluded", "a scarf hangs over the head camera", "camera-occluded", AT_ONCE,
+    FaultKind("camera-occluded", "a scarf hangs over the head camera", "camera-occluded", AT_ONCE,
          otherwise("camera", brightness=0.03, contrast=0.01), blinds=True, helped=True),
-    Kind("camera-frozen", "the head camera sends one picture for ever", "camera-frozen", AT_ONCE,
+    FaultKind("camera-frozen", "the head camera sends one picture for ever", "camera-frozen", AT_ONCE,
          lasting("camera", "unchanged"), blinds=True, stops=True),
-    Kind("base-failed", "the wheels report nothing", "base-failed", AT_ONCE, silent("base"),
+    FaultKind("base-failed", "the wheels report nothing", "base-failed", AT_ONCE, silent("base"),
          holds=True, stops=True),
-    Kind("stop-button-silent", "nothing is heard from the emergency stop", "stop-button-silent",
+    FaultKind("stop-button-silent", "nothing is heard from the emergency stop", "stop-button-silent",
          AT_ONCE, silent("stop_button"), stops=True),
-    Kind("navigation-failed", "the navigation program ends", "navigation-failed", AT_ONCE,
+    FaultKind("navigation-failed", "the navigation program ends", "navigation-failed", AT_ONCE,
          dead("navigator"), holds=True, stops=True),
-    Kind("base-stuck", "something is caught between the wheels", "base-stuck", DRIVING,
+    FaultKind("base-stuck", "something is caught between the wheels", "base-stuck", DRIVING,
          otherwise("base", still=4.0), holds=True),
-    Kind("wheels-slip", "a rug slides under the wheels", "wheels-slip", DRIVING,
+    FaultKind("wheels-slip", "a rug slides under the wheels", "wheels-slip", DRIVING,
          otherwise("base", slip=0.9), holds=True),
-    Kind("path-blocked", "chairs block every way", "path-blocked", DRIVING,
+    FaultKind("path-blocked", "chairs block every way", "path-blocked", DRIVING,
          otherwise("navigator", path="none"), holds=True, helped=True),
-    Kind("path-detour", "a chair stands in the shortest way", "path-detour", DRIVING,
+    FaultKind("path-detour", "a chair stands in the shortest way", "path-detour", DRIVING,
          otherwise("navigator", path="replanned")),
-    Kind("carried-off", "somebody pushes the robot elsewhere", "carried-off", AT_ONCE,
+    FaultKind("carried-off", "somebody pushes the robot elsewhere", "carried-off", AT_ONCE,
          otherwise("localisation", fit=0.55, spread=1.6), holds=True),
-    Kind("card-out-of-sight", "a card is where the camera cannot see it", "card-out-of-sight",
+    FaultKind("card-out-of-sight", "a card is where the camera cannot see it", "card-out-of-sight",
          LOOKING, helped=True),
-    Kind("requests-silent", "the request sensor sends nothing", "requests-silent", AT_ONCE,
+    FaultKind("requests-silent", "the request sensor sends nothing", "requests-silent", AT_ONCE,
          silent("requests")),
-    Kind("request-stuck", "a sign stays up after its owner was helped", "request-stuck", CLOSING,
+    FaultKind("request-stuck", "a sign stays up after its owner was helped", "request-stuck", CLOSING,
          helped=True),
-    Kind("request-withdrawn", "somebody who waited asks no more", "request-withdrawn",
+    FaultKind("request-withdrawn", "somebody who waited asks no more", "request-withdrawn",
          WAITING),
-    Kind("arm-failed", "a servo of an arm reports an error", "arm-failed", AT_ONCE,
+    FaultKind("arm-failed", "a servo of an arm reports an error", "arm-failed", AT_ONCE,
          otherwise("arms", hardware_error=True)),
-    Kind("voice-dead", "the voice ends", "voice-dead", AT_ONCE, dead("voice")),
-    Kind("screen-dead", "the chest screen goes dark", "screen-dead", AT_ONCE, dead("screen")),
-    Kind("never-complies", "a person says no to every request", "never-complies", ASKING),
-    Kind("no-effect", "a behaviour comes to nothing, and no sensor says why", "unexplained",
+    FaultKind("voice-dead", "the voice ends", "voice-dead", AT_ONCE, dead("voice")),
+    FaultKind("screen-dead", "the chest screen goes dark", "screen-dead", AT_ONCE, dead("screen")),
+    FaultKind("never-complies", "a person says no to every request", "never-complies", ASKING),
+    FaultKind("no-effect", "a behaviour comes to nothing, and no sensor says why", "unexplained",
          MOVING_ON),
 )  # fmt: skip
-KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _KINDS})
+KINDS: Mapping[str, FaultKind] = MappingProxyType({kind.name: kind for kind in _KINDS})
 """All kinds of faults, by name."""
 
 
@@ -123,7 +123,7 @@ class Injection:
     Without any of these it starts as soon as it can show.
     """
 
-    kind: Kind
+    kind: FaultKind
     step: int | None = None
     chance: float | None = None
     in_recovery: bool = False

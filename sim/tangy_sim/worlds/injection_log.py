@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tangy_sim.worlds.injection import AT_ONCE, Kind
+from tangy_sim.worlds.injection import AT_ONCE, FaultKind
 
 
 @dataclass
@@ -15,7 +15,7 @@ class Injected:
     `could_show` is the first step at which it could be noticed, None if it never could.
     """
 
-    kind: Kind
+    kind: FaultKind
     step: int
     seconds: float
     could_show: int | None = None
@@ -27,12 +27,12 @@ class InjectionLog:
     def __init__(self) -> None:
         self.all: list[Injected] = []
 
-    def came(self, kind: Kind, step: int, seconds: float) -> None:
+    def came(self, kind: FaultKind, step: int, seconds: float) -> None:
         """Record a fault's start at a step and a time in s; device faults show at once."""
         shows = step if kind.shows == AT_ONCE else None
         self.all.append(Injected(kind, step, seconds, shows))
 
-    def look(self, step: int, can_show: Callable[[Kind], bool]) -> None:
+    def look(self, step: int, can_show: Callable[[FaultKind], bool]) -> None:
         """Record which faults can be noticed in the coming step."""
         for one in self.all:
             if one.could_show is None and can_show(one.kind):

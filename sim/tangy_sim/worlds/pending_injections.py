@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tangy_sim.worlds.injection import Injection, Kind
+from tangy_sim.worlds.injection import FaultKind, Injection
 
 
 class ToCome:
@@ -26,7 +26,7 @@ class ToCome:
         """Injections that have not occurred, except random ones."""
         return [str(one) for one in self._left if one.chance is None]
 
-    def add(self, kind: Kind) -> None:
+    def add(self, kind: FaultKind) -> None:
         """Add a fault that starts as soon as it can show."""
         self._left.append(Injection(kind))
 
@@ -34,9 +34,9 @@ class ToCome:
         """Drop an added fault; those given at the start stay."""
         self._left = [i for i in self._left if i.kind.name != kind or i in self._given]
 
-    def due(self, step: int, can_show: Callable[[Kind], bool]) -> list[Kind]:
+    def due(self, step: int, can_show: Callable[[FaultKind], bool]) -> list[FaultKind]:
         """Return the faults that start at a step, by `can_show` if that decides."""
-        come, left = list[Kind](), list[Injection]()
+        come, left = list[FaultKind](), list[Injection]()
         for one in self._left:
             if one.chance is not None:
                 comes = self._chance() < one.chance
@@ -51,7 +51,7 @@ class ToCome:
         self._left = left
         return come
 
-    def due_in_recovery(self) -> list[Kind]:
+    def due_in_recovery(self) -> list[FaultKind]:
         """Return the faults that start during the recovery from another one."""
         come = [one for one in self._left if one.in_recovery]
         self._left = [one for one in self._left if not one.in_recovery]

@@ -12,7 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
 
-from tangy_sim.worlds.injection import AT_ONCE, KINDS, Kind
+from tangy_sim.worlds.injection import AT_ONCE, KINDS, FaultKind
 from tangy_tui.text.injections import NONE_FOUND, WHICH
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -60,7 +60,7 @@ class InjectDialog(Dialog[str | None]):
             kind.name: f"{kind.name} {kind.words} {called[kind.name]}".lower() for kind in self._all
         }
         self._typed = ""
-        self.kinds: tuple[Kind, ...] = ()
+        self.kinds: tuple[FaultKind, ...] = ()
 
     def compose(self) -> ComposeResult:
         """Lay out the kinds."""
@@ -108,7 +108,7 @@ class InjectDialog(Dialog[str | None]):
             )
         return lines
 
-    def _lifts(self, kind: Kind) -> bool:
+    def _lifts(self, kind: FaultKind) -> bool:
         return kind.name in self._there or kind.name in self._to_come
 
     def on_key(self, event: events.Key) -> None:
