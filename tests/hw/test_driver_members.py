@@ -63,3 +63,14 @@ def test_a_camera_is_refused_a_driver(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_device_of_the_robots_own_needs_the_common_members_only() -> None:
     assert members_of("battery") == ("name", "start", "close", "reading")
     assert members_of("laser") == ("name", "start", "close", "reading", "scan")
+
+
+def test_rosbridge_refuses_a_device_that_it_has_no_driver_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rosbridge = registry.DRIVERS["rosbridge"]
+    more = rosbridge._replace(devices=(*rosbridge.devices, "lamp"))
+    monkeypatch.setattr(registry, "DRIVERS", {**registry.DRIVERS, "rosbridge": more})
+    wiring = Wiring(load_robot("tangy"), load_activity("bingo"), MachineClock())
+    with pytest.raises(DeviceError, match="no device named 'lamp'"):
+        open_device(wiring, "lamp", {"kind": "rosbridge", "at": "ws://127.0.0.1:9"})

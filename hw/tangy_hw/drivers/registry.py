@@ -176,15 +176,18 @@ def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
                 place=settings.text("place", "/amcl_pose"),
                 initial=settings.text("initial", "/initialpose"),
             )
-    return RosArms(
-        link,
-        wiring.robot.limbs,
-        trajectory=settings.text("trajectory", "/joint_trajectory"),
-        states=settings.text("states", "/joint_states"),
-        torque=settings.text("torque", "/joint_torque"),
-        names=settings.joints("names"),
-        diagnostics=diagnostics,
-    )
+        case "arms":
+            return RosArms(
+                link,
+                wiring.robot.limbs,
+                trajectory=settings.text("trajectory", "/joint_trajectory"),
+                states=settings.text("states", "/joint_states"),
+                torque=settings.text("torque", "/joint_torque"),
+                names=settings.joints("names"),
+                diagnostics=diagnostics,
+            )
+        case other:
+            raise settings.wrong(f"rosbridge drives no device named {other!r}.")
 
 
 def _ros_base(
