@@ -19,8 +19,8 @@ from tangy_tui.world import World
 ACQUITS = 2
 """Looks that have to agree with the expectation.
 
-How many have to agree against it depends on how often a look is wrong (`ReaderErrorRate.needed`): four
-if 5% of all looks are wrong.
+How many have to agree against it depends on how often a look is wrong (`ReaderErrorRate.needed`):
+four if 5% of all looks are wrong.
 """
 
 MORE_LOOKS = 2
