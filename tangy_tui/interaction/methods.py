@@ -256,9 +256,9 @@ def fit_beta_prior(counts: Sequence[tuple[int, int]]) -> Beta:
     if not most:
         return Beta()
     grid = [n / GRID_STEPS for n in range(most + 1)]
-    yes = log_rising_factorials([y for y, _ in counts], [1 + u for u in grid])
-    no = log_rising_factorials([n for _, n in counts], [1 + v for v in grid])
-    both = log_rising_factorials([y + n for y, n in counts], [2 + w for w in grid])
+    yes = _log_rising_factorials([y for y, _ in counts], [1 + u for u in grid])
+    no = _log_rising_factorials([n for _, n in counts], [1 + v for v in grid])
+    both = _log_rising_factorials([y + n for y, n in counts], [2 + w for w in grid])
     u, v = max(
         ((u, v) for u in range(most + 1) for v in range(most + 1 - u)),
         key=lambda pair: yes[pair[0]] + no[pair[1]] - both[pair[0] + pair[1]],
@@ -266,7 +266,7 @@ def fit_beta_prior(counts: Sequence[tuple[int, int]]) -> Beta:
     return Beta(1 + grid[u], 1 + grid[v], (0, 0))
 
 
-def log_rising_factorials(times: Sequence[int], starts: Sequence[float]) -> list[float]:
+def _log_rising_factorials(times: Sequence[int], starts: Sequence[float]) -> list[float]:
     """Return, for each start a, the log of the product over n in `times` of a (a+1) ... (a+n-1)."""
     return [sum(math.lgamma(a + n) for n in times) - len(times) * math.lgamma(a) for a in starts]
 
