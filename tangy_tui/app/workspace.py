@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
-    from tangy_tui.interaction.record import Record
+    from tangy_tui.interaction.record import PersonSummary
     from tangy_tui.language.commands import Phrasebook
     from tangy_tui.language.intents import Intents
     from tangy_tui.learning.policy import Policy
@@ -294,7 +294,7 @@ class Workspace(Participants):
         strategies = tuple(self.activity.strategies)
         return PersonModels(self.store, strategies, self.activity.persuasion, world=world)
 
-    def records(self, *people: Person, world: GameWorld | None = None) -> list[Record]:
+    def records(self, *people: Person, world: GameWorld | None = None) -> list[PersonSummary]:
         """Read the report data of some people (default: everybody)."""
         from tangy_tui.interaction.record import read_records
 

@@ -25,7 +25,7 @@ class PersonGame:
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class PersonSummary:
     """Everything that is displayed about one person.
 
     `best` is, for each strategy, the probability that it is the best of those switched on (0 if it
@@ -60,7 +60,9 @@ class Record:
         return leading(self.best) if len(self.on) > 1 else None
 
 
-def read_records(store: Store, memory: PersonModels, people: Iterable[Person]) -> list[Record]:
+def read_records(
+    store: Store, memory: PersonModels, people: Iterable[Person]
+) -> list[PersonSummary]:
     """Read the records of some people."""
     responses = memory.responses()
     begun: dict[str, datetime] = {}
@@ -84,13 +86,13 @@ def _record(
     known: PersonModel,
     begun: Mapping[str, datetime],
     present: Mapping[str, datetime],
-) -> Record:
+) -> PersonSummary:
     history = tuple(memory.history(person.id))
     best = best_of_those_on(known.beliefs, known.off)
     times = [entry.at for entry in history]
     if person.id in present:
         times.append(present[person.id])
-    return Record(
+    return PersonSummary(
         person=person,
         known=known,
         best=best,

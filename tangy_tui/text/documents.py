@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.interaction.feedback import FeedbackEntry
-    from tangy_tui.interaction.record import Record
+    from tangy_tui.interaction.record import PersonSummary
     from tangy_tui.learning.comparison import SituationComparison
     from tangy_tui.learning.conflicts import Conflict, DemonstratedStep
     from tangy_tui.learning.explanation import DecisionReasons
@@ -210,7 +210,7 @@ def comparison_document(
     }
 
 
-def person_document(record: Record) -> dict[str, Any]:
+def person_document(record: PersonSummary) -> dict[str, Any]:
     """Describe one person's model: the posterior of each strategy, and its data."""
     known = record.known
     return {

@@ -14,20 +14,20 @@ if TYPE_CHECKING:
     from tangy_profiles.persuading import MethodName
     from tangy_profiles.store import Event
     from tangy_tui.interaction.feedback import FeedbackEntry
-    from tangy_tui.interaction.record import Record
+    from tangy_tui.interaction.record import PersonSummary
 
 SELDOM = 0.5
 """A best strategy with a lower mean does not count as working."""
 
 
-def sentence(record: Record) -> str:
+def sentence(record: PersonSummary) -> str:
     """Tell in one line what works with a person, with how much data, and when last seen."""
     return _what_works(record) + (
         f", last seen {ago(record.seen, record.now)}" if record.seen is not None else ""
     )
 
 
-def _what_works(record: Record) -> str:
+def _what_works(record: PersonSummary) -> str:
     name, best = record.person.name, record.leading
     responses = sum(belief.trials for belief in record.beliefs.values())
     complied = sum(belief.complied for belief in record.beliefs.values())
@@ -53,7 +53,7 @@ def _what_works(record: Record) -> str:
     return f"{best} works with {name}: {tally(belief)}"
 
 
-def _only(record: Record) -> str:
+def _only(record: PersonSummary) -> str:
     """Tell the counts of the only strategy that is on, since one cannot be the best."""
     (only,) = record.on
     name, belief = record.person.name, record.beliefs[only]
@@ -71,13 +71,13 @@ def tally(belief: Beta) -> str:
     return f"{belief.complied} of {belief.trials}"
 
 
-def method_words(record: Record) -> str:
+def method_words(record: PersonSummary) -> str:
     """Tell how the next strategy is chosen, and for whom that is set."""
     whose = "for this person" if record.known.own else "as the activity sets"
     return f"{record.known.method.words} ({whose})"
 
 
-def drift_lines(record: Record) -> list[str]:
+def drift_lines(record: PersonSummary) -> list[str]:
     """Name the strategies that have started to work better or worse with a person."""
     lines = []
     for drift in record.known.watch.drifts:

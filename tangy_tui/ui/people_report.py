@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from tangy_profiles.reading import plain
-from tangy_tui.interaction.record import Record
+from tangy_tui.interaction.record import PersonSummary
 from tangy_tui.text.people import (
     COMPLIED,
     HISTORY,
@@ -28,7 +28,7 @@ from tangy_tui.text.people import (
 from tangy_tui.text.times import on_day
 
 
-def print_people(records: Sequence[Record]) -> None:
+def print_people(records: Sequence[PersonSummary]) -> None:
     """Print everybody with their counts for each strategy, and a sentence about what works."""
     console = Console(highlight=False)
     strategies = tuple(records[0].beliefs)
@@ -43,7 +43,7 @@ def print_people(records: Sequence[Record]) -> None:
         console.print(Text(f"{record.person.id}: {plain(sentence(record))}"))
 
 
-def print_person(record: Record) -> None:
+def print_person(record: PersonSummary) -> None:
     """Print one person in detail."""
     console = Console(highlight=False)
     table = _table(
@@ -68,7 +68,7 @@ def print_person(record: Record) -> None:
     print_history(record)
 
 
-def print_history(record: Record) -> None:
+def print_history(record: PersonSummary) -> None:
     """Print the requests to a person, game by game."""
     console = Console(highlight=False)
     table = _table(HISTORY, "no.", "when", "strategy", "what came of it")
@@ -83,7 +83,7 @@ def print_history(record: Record) -> None:
     console.print(table if record.games else Text(NO_HISTORY))
 
 
-def _short(record: Record, strategy: str) -> Text:
+def _short(record: PersonSummary, strategy: str) -> Text:
     """Format a strategy in one cell; a star marks a unique highest P(best)."""
     belief = record.beliefs[strategy]
     star = " *" if strategy == record.leading and belief.trials else ""
@@ -92,7 +92,7 @@ def _short(record: Record, strategy: str) -> Text:
     return Text(f"{belief.complied}/{belief.trials} {share}{star}{off}")
 
 
-def _mark(record: Record, strategy: str) -> str:
+def _mark(record: PersonSummary, strategy: str) -> str:
     if strategy in record.known.off:
         return "switched off"
     return "settled" if strategy == record.settled else ""

@@ -9,7 +9,7 @@ from rich.cells import cell_len
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.person import is_guest
 from tangy_tui.interaction.feedback import FeedbackEntry
-from tangy_tui.interaction.record import Record
+from tangy_tui.interaction.record import PersonSummary
 from tangy_tui.text.people import (
     NO_REQUESTS,
     drift_lines,
@@ -33,7 +33,7 @@ COUNTS = 9  # columns: "40 of 100"
 STATE = 13
 
 
-def people_lines(records: Sequence[Record], width: int) -> list[ChoiceLine]:
+def people_lines(records: Sequence[PersonSummary], width: int) -> list[ChoiceLine]:
     """Format one sentence for each person, with the name highlighted."""
     lines = []
     for record in records:
@@ -46,7 +46,7 @@ def people_lines(records: Sequence[Record], width: int) -> list[ChoiceLine]:
     return lines
 
 
-def strategy_lines(record: Record, width: int, height: int) -> list[ChoiceLine]:
+def strategy_lines(record: PersonSummary, width: int, height: int) -> list[ChoiceLine]:
     """Format each strategy with curve, counts, mean, interval and P(best), then the method.
 
     The curves are as high as the panel allows.
@@ -80,7 +80,7 @@ def curve_lines(belief: Beta, width: int, height: int) -> list[str]:
     ]
 
 
-def _strategy(record: Record, strategy: str, label: int, drawn: str) -> Row:
+def _strategy(record: PersonSummary, strategy: str, label: int, drawn: str) -> Row:
     belief = record.beliefs[strategy]
     low, high = belief.interval()
     off = strategy in record.known.off
@@ -104,7 +104,7 @@ def _strategy(record: Record, strategy: str, label: int, drawn: str) -> Row:
     return tuple(spans)
 
 
-def history_lines(record: Record, width: int) -> list[ChoiceLine]:
+def history_lines(record: PersonSummary, width: int) -> list[ChoiceLine]:
     """Format the history, the newest game first, and in it the newest response first."""
     if not record.games:
         return [ChoiceLine(((NO_REQUESTS, "dim"),))]

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from tangy_profiles.persuading import PersuasionConfig
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.interaction.feedback import FeedbackEntry
-    from tangy_tui.interaction.record import Record
+    from tangy_tui.interaction.record import PersonSummary
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -339,7 +339,7 @@ def _off_words(off: list[str]) -> str:
     return plain(f" Switched off: {', '.join(off)}.") if off else ""
 
 
-def _record(workspace: Workspace, person: Person, world: GameWorld | None) -> Record:
+def _record(workspace: Workspace, person: Person, world: GameWorld | None) -> PersonSummary:
     (record,) = workspace.records(person, world=world)
     return record
 
@@ -349,7 +349,7 @@ def _world(word: str) -> GameWorld | None:
     return read_game_world(word) if word else None
 
 
-def _printed(record: Record, as_json: bool) -> bool:
+def _printed(record: PersonSummary, as_json: bool) -> bool:
     from tangy_tui.text.documents import person_document
 
     if as_json:

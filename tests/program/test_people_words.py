@@ -17,7 +17,7 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.memory import PersonModel, PersonModels
 from tangy_tui.interaction.methods import Thompson
 from tangy_tui.interaction.record import (
-    Record,
+    PersonSummary,
     best_of_those_on,
     on_of,
     read_records,
@@ -32,12 +32,12 @@ Counts = Mapping[str, tuple[int, int]]
 
 
 @pytest.fixture
-def noted(tmp_path: Path) -> Callable[..., Record]:
+def noted(tmp_path: Path) -> Callable[..., PersonSummary]:
     """Read Rosa's record from a log with these counts and switches."""
 
     def note(
         counts: Counts, off: tuple[str, ...] = (), strategies: tuple[str, ...] = NAMES
-    ) -> Record:
+    ) -> PersonSummary:
         with Store.open(tmp_path / "data") as store:
             for strategy, (yes, no) in counts.items():
                 for complied in [True] * yes + [False] * no:
@@ -54,7 +54,7 @@ def noted(tmp_path: Path) -> Callable[..., Record]:
 
 
 def test_a_single_enabled_strategy_is_not_called_best(
-    noted: Callable[..., Record],
+    noted: Callable[..., PersonSummary],
 ) -> None:
     record = noted({"suggestion": (0, 1)}, ("neutral", "praise", "scarcity"))
     assert sentence(record).startswith("only suggestion is switched on for Rosa: 0 of 1, last seen")
@@ -62,7 +62,7 @@ def test_a_single_enabled_strategy_is_not_called_best(
 
 
 def test_the_only_strategy_of_an_activity_is_never_settled(
-    noted: Callable[..., Record],
+    noted: Callable[..., PersonSummary],
 ) -> None:
     record = noted({"quiet": (8, 1)}, strategies=("quiet",))
     assert sentence(record).startswith(
@@ -82,7 +82,7 @@ def test_the_only_strategy_of_an_activity_is_never_settled(
     ],
 )  # fmt: skip
 def test_an_unsuccessful_strategy_is_not_said_to_work(
-    counts: Counts, said: str, noted: Callable[..., Record]
+    counts: Counts, said: str, noted: Callable[..., PersonSummary]
 ) -> None:
     record = noted(counts)
     assert sentence(record).startswith(said)
@@ -100,7 +100,7 @@ def test_a_strategy_works_only_after_compliance_and_with_a_choice(
     known = PersonModel(Thompson(), beliefs, beliefs, frozenset(off & set(beliefs)))
     best, on = best_of_those_on(beliefs, known.off), on_of(beliefs, known.off)
     settled = settled_of(on, best)
-    record = Record(Person("user1", "Rosa"), known, best, settled, (), (), None, NOW)
+    record = PersonSummary(Person("user1", "Rosa"), known, best, settled, (), (), None, NOW)
     words = sentence(record)
     if re.search(r"^\w+ (works|may work)", words):
         strategy = words.split()[0]

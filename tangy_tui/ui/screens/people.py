@@ -15,7 +15,7 @@ from tangy_tui.app.aloud import hear
 from tangy_tui.app.joining import let_join
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
-from tangy_tui.interaction.record import Record
+from tangy_tui.interaction.record import PersonSummary
 from tangy_tui.text import people as text
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -73,7 +73,7 @@ class PeopleScreen(TangyScreen[None]):
         self._workspace = workspace
         self._feedback = workspace.memory().feedback
         self._world = workspace.memory().world
-        self._records: dict[str, Record] = {}
+        self._records: dict[str, PersonSummary] = {}
         self._told = ""
 
     def compose(self) -> ComposeResult:
@@ -231,7 +231,7 @@ class PeopleScreen(TangyScreen[None]):
         self.leave(None)
 
     @property
-    def _record(self) -> Record:
+    def _record(self) -> PersonSummary:
         """The record of the chosen person."""
         chosen = str(self._list("people").chosen)
         self._told = chosen if chosen in self._records else self._told
