@@ -252,7 +252,7 @@ class Voice(Device, Protocol):
         ...
 
 
-class OwnNavigation(Device, Protocol):
+class ExternalNavigation(Device, Protocol):
     """A robot's own navigation, which localises the robot and drives it to goals.
 
     The facts of its reading include `path`: clear, replanned or none.
@@ -295,7 +295,7 @@ PROTOCOLS: Mapping[str, type] = {
     "arms": Arms,
     "screen": ChestScreen,
     "voice": Voice,
-    "navigator": OwnNavigation,
+    "navigator": ExternalNavigation,
 }
 """The Protocol of each device; all others, such as a battery, implement `Device` only."""
 

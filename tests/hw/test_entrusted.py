@@ -12,9 +12,9 @@ import pytest
 from tangy_hw.device_protocols import (
     STILL,
     DeviceError,
+    ExternalNavigation,
     MachineClock,
     Odometry,
-    OwnNavigation,
     Pose,
     Stamped,
     Twist,
@@ -64,7 +64,7 @@ async def living(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Living]:
     await server.start()
     bridge = Rosbridge(server.url)
     navigation = RosNavigator(bridge)
-    satisfied: OwnNavigation = navigation
+    satisfied: ExternalNavigation = navigation
     robot = LiveRobot(
         load_robot(), parts.body(bridge, navigation), ExternalNavigator(satisfied), MachineClock()
     )

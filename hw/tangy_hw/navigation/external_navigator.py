@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from tangy_hw.device_protocols import STILL, Odometry, OwnNavigation, Pose, Scan, Twist
+from tangy_hw.device_protocols import STILL, ExternalNavigation, Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import SPIN, State
@@ -31,7 +31,10 @@ class ExternalNavigator:
     """Drives to goals with a robot's own localisation and planner."""
 
     def __init__(
-        self, navigation: OwnNavigation, limits: MotionLimits | None = None, laser: Pose = IDENTITY
+        self,
+        navigation: ExternalNavigation,
+        limits: MotionLimits | None = None,
+        laser: Pose = IDENTITY,
     ) -> None:
         """Start without a goal; `laser` is the pose of the scanner on the robot."""
         self.state: State = "idle"

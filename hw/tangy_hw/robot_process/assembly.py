@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tangy_hw.device_protocols import Clock, DeviceError, MachineClock, OwnNavigation, Pose
+from tangy_hw.device_protocols import Clock, DeviceError, ExternalNavigation, MachineClock, Pose
 from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
@@ -194,7 +194,7 @@ def _counted(body: Body) -> dict[str, Callable[[], int]]:
 
 
 def _wayfinder(
-    setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None
+    setup: RobotSetup, robot: Robot, room: Room, own: ExternalNavigation | None
 ) -> NavigatorProtocol:
     """Return the navigation: the robot's own if it has one, otherwise Tangy's."""
     limits, laser = MotionLimits.of(robot), laser_of(robot)
