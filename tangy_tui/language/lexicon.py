@@ -15,6 +15,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.phrasebook import Phrase
 from tangy_tui.language.pronunciation import pronounce, suggest
+from tangy_tui.language.stop_sentence import stops
 from tangy_tui.language.words import Words, clean, spoken, words_of
 
 MOST_WAYS = 64  # pronunciations of one phrase; the first ones of most words come first
@@ -168,14 +169,21 @@ def _differ(other: Phrase | None, phrase: Phrase) -> bool:
 
 
 def distinct_word(phrasebook: Phrasebook, behaviour: str, phrase: Phrase) -> str:
-    """Return a word used only for one behaviour and missing in a phrase; "" if none."""
+    """Return a word used only for one behaviour and missing in a phrase; "" if none.
+
+    The phrase with the word before it does not stop the robot.
+    """
     users: dict[str, set[str]] = defaultdict(set)
     for entry in (*phrasebook.table.all(), *phrasebook.table.keywords):
         for word in entry.bare:
             users[word].add(entry.behaviour)
     own = (word for entry in phrasebook.table.all() for word in entry.bare
            if entry.behaviour == behaviour and entry.user is None)  # fmt: skip
-    return next((w for w in own if users[w] == {behaviour} and w not in phrase.words), "")
+    for word in own:
+        fits = users[word] == {behaviour} and word not in phrase.words
+        if fits and not stops(f"{word} {phrase.said}"):
+            return word
+    return ""
 
 
 def phones_of(text: str, activity: Activity) -> str:
