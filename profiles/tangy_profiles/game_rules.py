@@ -72,15 +72,17 @@ class GameRules:
     """Options that an activity offers staff for a game; "" and 0 if it has no such rule.
 
     `claim` is the word before the number of a card that is claimed to win. `claim_right`,
-    `claim_wrong`, `taken_back` and `play_on` are announcements; so are `all_called` (no number is
-    left, and each person gets a visit) and `nobody_won` (after these visits). A person without a
-    visit for `unvisited` calls gets one, if staff want that. See `CallsFirst`. Of more numbers than
-    `numbers_aloud`, so many are said, in the words of `more_numbers`.
+    `claim_late` (another card was first), `claim_wrong`, `taken_back` and `play_on` are
+    announcements; so are `all_called` (no number is left, and each person gets a visit) and
+    `nobody_won` (after these visits). A person without a visit for `unvisited` calls gets one, if
+    staff want that. See `CallsFirst`. Of more numbers than `numbers_aloud`, so many are said, in
+    the words of `more_numbers`.
     """
 
     patterns: tuple[Pattern, ...] = ()
     claim: str = ""
     claim_right: str = ""
+    claim_late: str = ""
     claim_wrong: str = ""
     taken_back: str = ""
     play_on: str = ""
@@ -195,6 +197,7 @@ def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRu
         strengths=strengths,
         claim=rules.text("claim", ""),
         claim_right=_said(rules, "claim_right", ("card", "pattern")),
+        claim_late=_said(rules, "claim_late", ("card", "pattern")),
         claim_wrong=_said(rules, "claim_wrong", ("card", "pattern")),
         taken_back=_said(rules, "taken_back", ("call",)),
         play_on=_said(rules, "play_on", ("pattern",)),

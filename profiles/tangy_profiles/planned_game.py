@@ -141,6 +141,10 @@ class PlannedGame:
         deck = self.patterns.played
         return deck.wins(called_cells(deck, numbers, set(self.called_now)))
 
+    def is_won_before(self, person: str) -> bool:
+        """Return whether the only winner is somebody else, whose claim was checked first."""
+        return not self.game_plan.several and bool(self.vouched - {person})
+
     def judged(self, place: str, state: str | None) -> str | None:
         """Return the user state at a place; a verified claim counts as a win."""
         return winning_state(self.activity.user_states) if place in self.vouched else state

@@ -24,6 +24,7 @@ StaffActionKind = Literal[
     "pace",
     "took back",
     "claim right",
+    "claim late",
     "claim wrong",
     "patterns",
     "rules",

@@ -311,6 +311,7 @@ DoneKind = Literal[
     "call taken back",
     "pace",
     "claim right",
+    "claim late",
     "claim wrong",
     "card given",
     "patterns",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Literal, assert_never
 
 from tangy_profiles.game_records import ChangeKind
 from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, next_pace
@@ -19,7 +19,6 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GoesAway,
     LetWin,
-    NoteKind,
     PlanCommand,
     SetPace,
     StaffNote,
@@ -212,14 +211,20 @@ class GamePlanControls:
         wins = world.wins(card)
         rules, present = world.activity.rules, world.patterns.present
         pattern = present or next(iter(rules.patterns), None)
-        words = rules.claim_right if wins else rules.claim_wrong
         holder = person or world.holder(card)
-        self._note("claim right" if wins else "claim wrong", person=holder or "", detail=str(card))
+        late = bool(wins and rules.claim_late and holder and world.is_won_before(holder))
+        kind: Literal["claim right", "claim late", "claim wrong"]
+        kind = "claim late" if late else "claim right" if wins else "claim wrong"
+        words = {"claim late": rules.claim_late, "claim right": rules.claim_right}.get(
+            kind, rules.claim_wrong
+        )
+        self._note(kind, person=holder or "", detail=str(card))
         said = words.format(card=card, pattern=pattern.label if pattern else "")
         world.announce(said)
         people = (holder,) if holder else ()
-        kind: NoteKind = "claim right" if wins else "claim wrong"
         told: list[Result] = [StaffNote(kind, str(card), said, people)]
+        if late:
+            return told
         if wins and holder:
             told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
         elif wins:

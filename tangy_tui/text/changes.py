@@ -51,7 +51,7 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
         case "visit over":
             return f"{person} has had a visit."
         case "calls first":
-            return f"Many are asking. {calls_first_words(event.number)}"
+            return f"Tangy has visited several people. {calls_first_words(event.number)}"
         case "all called":
             return "All numbers have been called. Tangy goes to each person and looks at the card."
         case "nobody won":

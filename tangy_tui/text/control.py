@@ -123,6 +123,9 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"Tangy calls every {about} seconds{spoken}."
         case "claim right":
             return f"{_whose_card(noted, name)} wins. Tangy tells everybody: {noted.words}"
+        case "claim late":
+            late = "wins, too, but another card was first, and there is one winner"
+            return f"{_whose_card(noted, name)} {late}. Tangy tells everybody: {noted.words}"
         case "claim wrong":
             return (
                 f"{_whose_card(noted, name)} does not win yet. Tangy tells everybody: {noted.words}"

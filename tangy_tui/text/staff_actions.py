@@ -73,6 +73,8 @@ def did_words(noted: Noted, name: Name) -> str:
             return f"took a call back: {detail}"
         case "claim right":
             return f"had {_card(detail, person)} checked: it wins"
+        case "claim late":
+            return f"had {_card(detail, person)} checked: it wins, too, but another card was first"
         case "claim wrong":
             return f"had {_card(detail, person)} checked: it does not win yet"
         case "patterns":
@@ -141,6 +143,8 @@ def action_words(noted: Noted, name: Name) -> str:
             return f"a call was taken back: {detail}"
         case "claim right":
             return f"{_card(detail, person)} was checked: it wins"
+        case "claim late":
+            return f"{_card(detail, person)} was checked: it wins, too, but another card was first"
         case "claim wrong":
             return f"{_card(detail, person)} was checked: it does not win yet"
         case "patterns":

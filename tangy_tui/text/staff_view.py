@@ -137,6 +137,11 @@ def next_words(
     return f"Next: {done}{f' ({notes})' if notes else ''}{because}.{calls}"
 
 
+def plays_on_words(pattern: str) -> str:
+    """Tell that the game goes on for the next pattern after a win."""
+    return f"Somebody has won. Next: the game goes on for {pattern}."
+
+
 def calls_first_words(calls: int) -> str:
     """Tell how many numbers Tangy calls before it goes to people who asked."""
     return f"Tangy calls {counted(calls, 'number')} before it goes to those who ask."

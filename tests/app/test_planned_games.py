@@ -45,6 +45,7 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import moment_lines, replay_lines, session_lines
 from tangy_tui.text.report import changes_lines, staff_rows
+from tangy_tui.ui.screens.play_view import ViewSource, next_line
 
 
 class Planned:
@@ -134,6 +135,34 @@ def test_a_claim_is_checked_against_the_called_numbers(planned: Planned) -> None
     assert planned.do(ClaimCard(3)) == ["claim right", "claimed"]
     planned.play()
     assert planned.celebrated()[-1] == "user3"
+
+
+@pytest.mark.parametrize(("several", "told"), [(False, "claim late"), (True, "claim right")])
+def test_a_second_right_claim_is_late_unless_several_may_win(
+    planned: Planned, several: bool, told: str
+) -> None:
+    planned.begin(GamePlan(("full card",), several=several))
+    planned.play(calls=20)
+    planned.control.apply(ChoosePatterns(("line",)))
+    world = planned.world
+    first, second = world.players["user3"].numbers[:5], world.players["user4"].numbers[:5]
+    called = tuple(dict.fromkeys((*first, *second)))
+    world.order[: len(called)] = called
+    world.patterns.advance()
+    assert planned.do(ClaimCard(3)) == ["claim right", "claimed"]
+    assert planned.do(ClaimCard(4))[0] == told
+    assert world.vouched == {"user3", *(("user4",) if several else ())}
+    planned.play()
+    assert "user3" in planned.celebrated() and ("user4" in planned.celebrated()) is several
+
+
+def test_after_a_win_staff_read_that_the_game_goes_on(planned: Planned) -> None:
+    planned.begin(GamePlan(("line", "full card")))
+    while not planned.world.tracker.finished:
+        planned.events += go_on_by_script(planned.control, expert=True)
+    line = next_line(ViewSource(planned.world, planned.control, 0, str))
+    assert planned.world.patterns.left[0].label in line
+    assert planned.world.activity.behaviours["valediction"].question not in line
 
 
 def test_cards_in_play_are_those_of_people_who_are_here(planned: Planned) -> None:

@@ -67,11 +67,13 @@ def next_line(shown: ViewSource) -> str:
         return text.WAITS_FOR_YOU
     if control.welcomes:
         return text.welcomes_words(control.welcomes)
-    found = next_step(world, control.supervision.policy)
     planned = as_planned(world)
+    found = next_step(world, control.supervision.policy)
     calls_first = 0 if planned is None else planned.tracker.calls_first
     words = ""
-    if found is not None:
+    if planned is not None and planned.tracker.finished and planned.patterns.left:
+        words = text.plays_on_words(planned.patterns.left[0].label)
+    elif found is not None:
         waits = control.robot.rests(found[0])
         words = text.next_words(world.activity, *found, shown.name, calls_first, waits=waits)
     elif shown.said:  # if the next step is unknown, staff need to know the last question
