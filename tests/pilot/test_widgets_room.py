@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -349,15 +350,28 @@ async def test_a_robot_moved_during_a_hold_walks_there_afterwards(
         assert screen.arrived == ["user1"]
 
 
-@pytest.mark.parametrize("people", [9, 12])
-@pytest.mark.parametrize("width", [56, 76, 78, 118, 158])
-def test_each_table_of_a_hall_is_drawn_to_both_ends(people: int, width: int) -> None:
-    room = load_room("hall")
-    grid = Grid(room, people, plan(width, 8, people))
-    assert len(grid.tables) == 3
-    for left, right in grid.tables:
-        cards = [centre for centre in grid.centres if left <= centre <= right]
-        assert cards and left < cards[0] - 1 and cards[-1] + 1 < right
+@pytest.mark.parametrize("people", [9, 12, 20, 24])
+@pytest.mark.parametrize("width", [80, 118, 160])
+async def test_each_table_of_a_hall_is_drawn_to_both_ends(
+    run: Run, sample: Sample, people: int, width: int
+) -> None:
+    seated = tuple(Person(f"p{number}", f"P{number}") for number in range(people))
+    hall = RoomScreen(replace(sample, room=load_room("hall"), people=seated))
+    async with run(hall, (width, 24)) as pilot:
+        hall.room.show(Scene(FRONT, (), {}, (), None))
+        await pilot.pause()
+        rows = pilot.text().splitlines()
+    cards = next(row for row in rows if "[▦]" in row)
+    tables = [table.strip() for table in re.findall("│([^│]*)│", cards)]
+    assert len(tables) == 3 and sum(table.count("[▦]") for table in tables) == people
+    assert "".join(tables).replace("[▦]", "").strip() == ""
+
+
+@pytest.mark.parametrize("width", [20, 56, 76])
+def test_cards_keep_their_order_where_tables_have_no_room_for_ends(width: int) -> None:
+    grid = Grid(load_room("hall"), 24, plan(width, 8, 24))
+    assert grid.centres == sorted(grid.centres)
+    assert grid.centres[0] >= 0 and grid.centres[-1] < width
 
 
 async def test_names_in_a_full_hall_are_complete_and_absences_marked(

@@ -86,7 +86,6 @@ class RoomDrawing:
         plan = self._plan
         row = plan.table_row
         for left, right in self._grid.tables:
-            left, right = max(1, left), min(plan.width - 2, right)  # as wide as the wall
             inner = max(0, right - left - 1)
             if plan.table == 3:
                 self._lines[row].put(left, "╭" + "─" * inner + "╮", "table")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from rich.cells import cell_len
 
@@ -90,6 +90,8 @@ def plan(width: int, height: int, people: int = 4) -> RoomPlan:
 
 CARD = 3
 """The width of a card on a table, in cells."""
+EDGE = 1
+"""The cells beside the outer tables that stay free, as beside the wall."""
 
 
 class Grid:
@@ -109,25 +111,35 @@ class Grid:
         self._depth = max(0.1, near - room.reach - room.front.y)
         self._near = near
         self._plan = plan
-        self.centres = self._beside_ends([self.column(x) for x in seats])
+        at_table = [sum(table[2] < x for table in tables) for x in seats]
+        self.centres = self._between_ends([self.column(x) for x in seats], at_table)
         middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
         self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
         self.tables = [self._ends(table[0], table[2]) for table in tables or (room.table,)]
         self.front = self.column(room.front.x)
 
-    def _beside_ends(self, centres: list[int]) -> list[int]:
-        """Move the outer cards by a cell if they would hide the ends of their tables."""
-        first, last = 2, self._plan.width - 3
-        wide = all(b - a > CARD for a, b in pairwise(centres))
-        return [min(max(first, one), last) for one in centres] if wide else centres
+    def _between_ends(self, centres: list[int], at_table: list[int]) -> list[int]:
+        """Move cards (centre columns) by as little as shows both ends of each table.
+
+        If there is no room for the ends, nothing is moved.
+        """
+        needed = [CARD if a == b else CARD + 2 for a, b in pairwise(at_table)]
+        gaps = [min(b - a, need) for (a, b), need in zip(pairwise(centres), needed, strict=True)]
+        least = list(accumulate(gaps, initial=EDGE + 2))
+        spare = self._plan.width - 1 - EDGE - 2 - least[-1]
+        if spare < 0:
+            return centres
+        wished = zip(centres, least, strict=True)
+        return [min(max(centre, low), low + spare) for centre, low in wished]
 
     def _ends(self, left: float, right: float) -> tuple[int, int]:
         """Return the end columns of a table (from and to in m), outside the cards on it."""
-        start, end = self.column(left), self.column(right)
+        first, last = EDGE, self._plan.width - 1 - EDGE
+        start, end = max(first, self.column(left)), min(last, self.column(right))
         cards = [centre for centre in self.centres if start <= centre <= end]
         if not cards:
             return start, end
-        return max(0, min(start, cards[0] - 2)), min(self._plan.width - 1, max(end, cards[-1] + 2))
+        return max(first, min(start, cards[0] - 2)), min(last, max(end, cards[-1] + 2))
 
     def on_floor(self, point: Point) -> bool:
         """Return whether a point in m is in front of the table, where the floor is drawn."""
