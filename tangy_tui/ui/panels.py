@@ -26,6 +26,9 @@ LOW = [(0, "-low"), (22, "-tall")]
 ALWAYS_SHOWN = 2
 """The keys at the end of a key line that always stay: esc and ?."""
 
+TOGETHER = {"slower": "faster"}
+"""Keys that a key line shows only with the key after them."""
+
 HOME = "back:home"
 """The key that leaves a screen with an input line; in the line it has to be pressed twice."""
 
@@ -80,6 +83,9 @@ class KeyLine(Static):
         first, last = keys[:-ALWAYS_SHOWN], keys[-ALWAYS_SHOWN:]
         width = self.size.width
         while first and sum(len(key) + len(word) + 3 for key, word in (*first, *last)) - 2 > width:
+            first.pop()
+        shown = len(first)  # the keys of the foot are in the order of `self._keys`
+        if shown and TOGETHER.get(str(self._keys[shown - 1])) == self._keys[shown]:
             first.pop()
         parts: list[str | tuple[str, str]] = []
         for key, word in (*first, *last):

@@ -12,6 +12,7 @@ from textual.widget import Widget
 
 from tangy_profiles.beliefs import Beta
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable, bar
 from tangy_tui.ui.widgets.posteriors import Posteriors, curve
@@ -442,3 +443,16 @@ async def test_a_scrolled_log_keeps_its_place_after_a_resize(run: Run) -> None:
         log.write("the newest")
         await pilot.pause()
         assert log.scroll_offset.y == 5
+
+
+# --------------------------------------------------------------------------------- key line
+
+
+@pytest.mark.parametrize(("width", "shown"), [(68, False), (75, False), (85, True)])
+async def test_the_keys_for_slower_and_faster_are_shown_together(
+    run: Run, width: int, *, shown: bool
+) -> None:
+    keys = ("pause", "stop", "claim", "why", "slower", "faster", "autonomy", "back:leave", "help")
+    async with run(One(KeyLine(*keys)), (width, 24)) as pilot:
+        foot = pilot.lines()[0]
+        assert ("slower" in foot, "faster" in foot) == (shown, shown)
