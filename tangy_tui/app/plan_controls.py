@@ -212,22 +212,23 @@ class GamePlanControls:
         rules, present = world.activity.rules, world.patterns.present
         pattern = present or next(iter(rules.patterns), None)
         holder = person or world.holder(card)
-        late = bool(wins and rules.claim_late and holder and world.is_won_before(holder))
         kind: Literal["claim right", "claim late", "claim wrong"]
-        kind = "claim late" if late else "claim right" if wins else "claim wrong"
-        words = {"claim late": rules.claim_late, "claim right": rules.claim_right}.get(
-            kind, rules.claim_wrong
-        )
+        if not wins:
+            kind, words = "claim wrong", rules.claim_wrong
+        elif rules.claim_late and holder and world.is_won_before(holder):
+            kind, words = "claim late", rules.claim_late
+        else:
+            kind, words = "claim right", rules.claim_right
         self._note(kind, person=holder or "", detail=str(card))
         said = words.format(card=card, pattern=pattern.label if pattern else "")
         world.announce(said)
         people = (holder,) if holder else ()
         told: list[Result] = [StaffNote(kind, str(card), said, people)]
-        if late:
+        if kind != "claim right":
             return told
-        if wins and holder:
+        if holder:
             told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
-        elif wins:
+        else:
             told.append(StaffNote("whose card", str(card)))
         return told
 

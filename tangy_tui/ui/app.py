@@ -28,8 +28,8 @@ from tangy_tui.ui.blank_screen import BlankScreen
 from tangy_tui.ui.clean_output import CleanOutput
 from tangy_tui.ui.key_reading import KeyReader, prepare_stop
 from tangy_tui.ui.keys import DEFAULT, bind
+from tangy_tui.ui.message_history import MessageHistoryApp
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.messages_again import TellingApp
 from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
 from tangy_tui.ui.screen_diff import ScreenDiff, TextUpdate
 from tangy_tui.ui.terminal import SERVED, TerminalKind
@@ -61,7 +61,7 @@ def collect_again() -> None:
     gc.enable()
 
 
-class TangyApp(TellingApp):
+class TangyApp(MessageHistoryApp):
     """The Textual application. Its screens are pushed from outside.
 
     `return_code` is 0 after a normal end, 129 after the terminal was closed, 143 after SIGTERM.

@@ -12,7 +12,7 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.dialogs.messages import MessagesDialog
 from tangy_tui.ui.listing import listed
-from tangy_tui.ui.messages_again import TellingApp
+from tangy_tui.ui.message_history import MessageHistoryApp
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import help_for
 from tangy_tui.ui.screens.home import HomeScreen
@@ -103,7 +103,7 @@ async def test_the_key_line_after_the_last_conflict_lists_the_remaining_keys(
 
 async def test_messages_can_be_read_again_with_their_times(run: Run) -> None:
     async with run(HomeScreen()) as pilot:
-        assert isinstance(pilot.app, TellingApp)
+        assert isinstance(pilot.app, MessageHistoryApp)
         pilot.app.say("The first message.")
         pilot.app.say("The second message.")
         pilot.app.clear_notifications()

@@ -56,7 +56,7 @@ def keys(
         *(("tell",) if tells or not cards else ()),
         *(("claim",) if cards else ()), "why", "command",
         *(("slower", "faster") if cards else ()), "autonomy",
-        *(("undo:call back",) if cards else ()), *(("presence",) if cards else ()), "messages",
+        *(("undo:take back",) if cards else ()), *(("presence",) if cards else ()), "messages",
         *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "inside",
         ("1-7", "show"), "back:leave", "help",
     )  # fmt: skip

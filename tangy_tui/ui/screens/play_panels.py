@@ -37,7 +37,7 @@ from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.keys import keymap_of
-from tangy_tui.ui.messages_again import remember
+from tangy_tui.ui.message_history import remember
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.play_keys import keys
 from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view

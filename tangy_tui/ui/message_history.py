@@ -20,8 +20,8 @@ MOST = 100
 """The most messages that are kept."""
 
 
-class TellingApp(App[None]):
-    """Tells sentences in messages, and lists the last ones."""
+class MessageHistoryApp(App[None]):
+    """An application that shows messages, and lists the last ones again."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bind("messages")]
 
