@@ -1,4 +1,4 @@
-"""Who leaves or comes during a step is logged and shown at once, and takes effect after it."""
+"""What staff say of people during a step is shown at once, and takes effect after it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import ComesIn, GameCommand, GoesAway, StaffNote
+from tangy_tui.app.game_commands import AskFor, ComesIn, GameCommand, GoesAway, StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.console.telling import GameTelling
@@ -94,6 +94,23 @@ def test_who_leaves_and_comes_back_during_a_step_is_here(robot: Robot) -> None:
     assert shown == [("user2",), ()]
     assert said(robot) == changed(robot) == [("left", "user2"), ("came", "user2")]
     assert robot.control.plan.away == robot.world.away == set()
+
+
+def test_a_request_by_word_of_staff_is_shown_during_the_step(robot: Robot) -> None:
+    shown = list[tuple[tuple[str, ...], list[str]]]()
+
+    def meanwhile(do: str, time: float) -> None:
+        robot.link.meanwhile = lambda do, time: None
+        robot.control.apply(AskFor("user3"))
+        asks = [one.id for one in robot.control.view().people if one.state == "asks"]
+        shown.append((robot.control.plan.scene.requests, asks))
+        assert robot.world.tracker.queue == []
+
+    robot.link.meanwhile = meanwhile
+    robot.next(1)
+    assert shown == [(("user3",), ["user3"])]
+    robot.next(1)
+    assert robot.control.plan.scene.requests == ("user3",)
 
 
 def test_a_word_of_staff_that_an_interruption_overtook_holds_in_the_resumed_game(

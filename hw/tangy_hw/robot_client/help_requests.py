@@ -56,6 +56,11 @@ class HelpRequestTracker:
         aside = self._aside | self._unseen
         return {p: since for p, since in signs.items() if p not in aside} | self._by_word
 
+    @property
+    def by_word(self) -> tuple[str, ...]:
+        """People for whom staff asked, or who asked before an interruption, in this order."""
+        return tuple(self._by_word)
+
     def ask_for(self, person: str) -> None:
         """Record a request for a person without a sign."""
         self._by_word[person] = self._link.time

@@ -80,6 +80,7 @@ class LivePlan(PlannedGame):
     _robot: Robot
     cards: CardObservations
     calls: CallOrder
+    over: bool
     requests: HelpRequestTracker
     _due: float
     _held_since: float | None = None
@@ -122,6 +123,18 @@ class LivePlan(PlannedGame):
         if person in self.activity.teams:
             return person
         return f"{self._room.seat_word or SEAT} {self.people.index(person) + 1}".capitalize()
+
+    @property
+    def queue(self) -> tuple[str, ...]:
+        """Who asks for help, in the order in which they are served; after the game nobody.
+
+        A request by word counts at once, also before the game takes it in after its present step.
+        """
+        if self.over:
+            return ()
+        queue = tuple(self.tracker.queue)
+        new = (one for one in self.requests.by_word if one not in queue and one not in self.away)
+        return *queue, *new
 
     @property
     def arrived(self) -> bool:

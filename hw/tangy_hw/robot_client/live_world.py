@@ -350,11 +350,6 @@ class LiveWorld(LivePlan):
 
     # ------------------------------------------------------------------------ scene
 
-    @property
-    def queue(self) -> tuple[str, ...]:
-        """Who asks for help, in the order in which they are served; after the game nobody."""
-        return () if self.over else tuple(self.tracker.queue)
-
     def scene(self) -> Scene:
         """Return the scene for a screen to draw."""
         tracker, asking, view = self.tracker, self.queue, self.cards.view
