@@ -62,7 +62,7 @@ TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immedi
 SAME_WORD = 0.7  # similarity from which an unknown word counts as a misspelling
 LIKELY = 0.6  # likelihood from which words without a verb of stopping stop the robot
 ALMOST_CERTAIN = 0.95  # likelihood from which words with one do that the rules do not know
-# Both were chosen with each written set left out of the training once.
+# The second was chosen with each written set left out of the training once.
 FEWEST, MOST = 3, 30  # words of what is judged so; fewer are mostly commands to the program
 _VERB = re.compile(r"\b(?:stop|halt)")
 _NEGATED = re.compile(r"(?:\bnot|nt|\bnever)(?: \w+){0,2} (?:stop|halt)")  # "dont ever stop"

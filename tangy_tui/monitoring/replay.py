@@ -151,9 +151,9 @@ class GameReplay:
     unasked: set[tuple[int, str]] = field(default_factory=set)
     """Step and person of visits without a request."""
     staff_pauses: PauseTotal = field(default_factory=PauseTotal)
+    """When staff paused the game or stopped the robot."""
     set_ups: PauseTotal = field(default_factory=PauseTotal)
     """How often, and for how many s in all, the robot was set up for people who joined."""
-    """When staff paused the game or stopped the robot."""
     staff_changes: list[Moment] = field(default_factory=list)
     """The changes that `moments` tell as actions of staff, or not at all."""
     activity: Activity | None = None
