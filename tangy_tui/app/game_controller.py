@@ -7,8 +7,8 @@ commands reach the robot at once, the rest wait for the current behaviour. All a
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
 
 from tangy_profiles.behaviour import Behaviour
@@ -108,7 +108,6 @@ class GameController(PausingGames):
         self.going = True
         self.single = False
         self.paused_itself = False
-        self._holds = 0  # open questions that hold the game
         self._turn = threading.RLock()
         """Guards the supervision and the robot."""
         self._watch = StaffWatch()
@@ -129,7 +128,9 @@ class GameController(PausingGames):
             return "staff"
         if self.supervision.question is not None or self.proposal is not None:
             return "asking"
-        return "running" if self.going else "paused"
+        if not self.going:
+            return "paused"
+        return "asking" if self._unanswered else "running"
 
     @property
     def proposal(self) -> Proposal | None:
@@ -314,18 +315,6 @@ class GameController(PausingGames):
         """Log what staff did (see `Supervision.note`), unless the log is full."""
         with suppress(TangyError):
             self.supervision.note(did, by or self.by, **what)
-
-    @contextmanager
-    def holding(self) -> Iterator[None]:
-        """Hold the game and its count-down, while staff are asked whether they mean a command."""
-        self._holds += 1
-        self.robot.hold_calls(held=True)
-        try:
-            yield
-        finally:
-            self._holds -= 1
-            self.robot.hold_calls(held=bool(self._holds))
-            self._tell_all()
 
     def _take_over(self) -> list[Result]:
         if refused := self.refusal():

@@ -6,7 +6,7 @@ the home has, and lunch does not wait.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from tangy_tui.app.fault_commands import Result
@@ -27,6 +27,10 @@ class PausingGames(JoiningGames):
     paused_itself: bool
     """Whether the program paused the game, and not staff."""
     _watch: StaffWatch
+    _holds = 0
+    """The number of questions that hold the game, until what staff confirm is carried out."""
+    _unanswered = 0
+    """The number of these that staff have not answered yet."""
 
     def _tell_all(self) -> None:
         raise NotImplementedError
@@ -52,6 +56,31 @@ class PausingGames(JoiningGames):
             self.robot.driving = False
             self.going = going and not self.stopped
             self.note("drove")
+            self._tell_all()
+
+    @contextmanager
+    def holding(self) -> Iterator[Callable[[], None]]:
+        """Hold the game and its count-down, while staff are asked whether they mean a command.
+
+        Yield a function to call when staff have answered: until the end of the context the game
+        waits for what they confirmed, and no longer for them.
+        """
+        waits = True
+
+        def answered() -> None:
+            nonlocal waits
+            self._unanswered -= waits
+            waits = False
+
+        self._holds += 1
+        self._unanswered += 1
+        self.robot.hold_calls(held=True)
+        try:
+            yield answered
+        finally:
+            answered()
+            self._holds -= 1
+            self.robot.hold_calls(held=bool(self._holds))
             self._tell_all()
 
     def _stop(self, by: str) -> list[Result]:

@@ -89,6 +89,7 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
         super().__init__(yes, write)
         self._controller, self._name = controller, name
         self._hold = ExitStack()
+        self._answered: Callable[[], None] = lambda: None
 
     def ask(self, command: GameCommand, typed: SimpleQueue[str | None] | None) -> bool:
         """Return whether a command needs an answer first, and ask for it.
@@ -99,7 +100,7 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
         """
         asked = needed_confirmation(command, self._controller) if self._yes.typed else None
         if asked is not None:
-            self._hold.enter_context(self._controller.holding())
+            self._answered = self._hold.enter_context(self._controller.holding())
             self._put(asked.command, confirmation_words(asked, self._name), typed)
         return asked is not None
 
@@ -126,6 +127,7 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
 
     def end_of_hold(self) -> Callable[[], Sequence[ControllerOutput]]:
         """Return a function that lets the game go on, once a confirmed command is carried out."""
+        self._answered()
         hold = self._hold.pop_all()
 
         def end() -> Sequence[ControllerOutput]:

@@ -46,7 +46,7 @@ WAITS = {
 """Why the robot waits on its way."""
 
 WAITS_FOR_YOU = "waits for your answer"
-"""The status while Tangy's question is open."""
+"""The status while Tangy's question to staff is open."""
 WAITS_SHORT = {"walking": "lets somebody pass", "standing": "somebody is in the way"}
 """The same, shorter, for a line with other facts."""
 

@@ -13,7 +13,7 @@ from tangy_profiles.state import ActivityState
 from tangy_tui.app.game_commands import Autonomy
 from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
-from tangy_tui.text.control import autonomy_words
+from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import moment_words
 
@@ -27,7 +27,7 @@ NOTHING_CALLED = "nothing called yet"
 PAUSED = "Paused."
 TIME_FIRST = ", once everybody has had time"
 """Why Tangy does not call the next number yet."""
-WAITS_FOR_YOU = "Tangy waits for your answer."
+TANGY_WAITS = f"Tangy {WAITS_FOR_YOU}."
 OVER = "The game is over."
 
 

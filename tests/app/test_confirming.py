@@ -22,6 +22,7 @@ from tangy_tui.app.game_commands import (
     TakeBackCall,
 )
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.game_view import view_of
 from tangy_tui.app.terminal_session import TerminalSession
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.staff import StaffLines
@@ -29,6 +30,7 @@ from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.text.confirmations import confirmation_words
 from tangy_tui.text.questions import NO_QUESTION
+from tangy_tui.text.watching import view_lines
 from tests.app.test_interruption import Robot
 
 PATIENCE = 20.0  # s
@@ -188,6 +190,25 @@ def test_nothing_is_done_while_a_question_is_open(control: GameController) -> No
     for _ in range(20):
         control.next()
     assert called(control) != before
+
+
+def test_an_open_question_is_a_phase_of_the_game_until_it_is_answered(
+    control: GameController,
+) -> None:
+    call_once(control)
+    with control.holding() as answered:
+        with control.holding():
+            assert str(control.phase) == "asking"
+        view = view_of(control)
+        assert view is not None and "Tangy asks staff" in "".join(view_lines(view, None, str))
+        answered()
+        answered()
+        assert str(control.phase) == "running"
+        with control.holding():
+            assert str(control.phase) == "asking"
+            control.apply(Pause())
+            assert str(control.phase) == "paused"
+        assert control.next() == []  # what was confirmed is still to be carried out
 
 
 def test_a_call_is_named_by_the_question(control: GameController) -> None:

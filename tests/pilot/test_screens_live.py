@@ -21,7 +21,9 @@ from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
+from tangy_tui.text.control import WAITS_FOR_YOU
 from tangy_tui.text.live_games import LOOKS_ROUND
+from tangy_tui.text.staff_view import TANGY_WAITS
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -30,6 +32,8 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
+from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import SMALL, screen_text
 from tests.pilot.ears import FakeEars
@@ -520,7 +524,13 @@ async def test_the_game_waits_while_staff_are_asked_about_a_call(
         for _ in range(20):
             assert live(pilot).control.next() == []
         assert len(world.called) == count
+        line = live(pilot).query_one(StatusLine)
+        assert (live(pilot).control.phase, line.status.note) == ("asking", WAITS_FOR_YOU)
+        now = live(pilot).query_one(StaffPanel)  # the question covers it
+        assert now.render_line(0).text.strip() == TANGY_WAITS
         await pilot.press("n")
+        await until_shown(pilot, lambda: live(pilot).control.phase == "running")
+        assert line.status.note != WAITS_FOR_YOU
         await until_shown(pilot, lambda: len(world.called) > count)
 
 

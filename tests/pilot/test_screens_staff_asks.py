@@ -19,8 +19,7 @@ from tangy_tui.text.confirmations import called_meanwhile
 from tangy_tui.text.control import WAITS_FOR_YOU, waits_words
 from tangy_tui.text.games import REPORT_AFTER_LEAVING, REPORT_AT_HOME
 from tangy_tui.text.interruptions import to_be_resumed_words
-from tangy_tui.text.staff_view import TIME_FIRST
-from tangy_tui.text.staff_view import WAITS_FOR_YOU as TANGY_WAITS
+from tangy_tui.text.staff_view import TANGY_WAITS, TIME_FIRST
 from tangy_tui.ui import run as opening
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog

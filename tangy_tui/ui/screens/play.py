@@ -170,8 +170,9 @@ class PlayScreen(PlayStaff):
         """Ask whether to leave in mid-game; the game waits, which is no pause of staff."""
         self._leaving = True
         dialog = ConfirmDialog(text.LEAVE, self._leave_detail(), yes="leave", no="go on")
-        with self.control.holding():
+        with self._holding() as answered:
             leaves = await self.app.push_screen_wait(dialog)
+            answered()
             self._leaving = False
             if leaves:
                 self._ended = True

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 from textual.timer import Timer
@@ -161,9 +161,27 @@ class PlayStaff(PlayPanels):
         dialog = ConfirmDialog(
             words.question, words.detail, yes=words.yes, no=words.no, also=called_since
         )
-        with self.control.holding():
-            if await self.app.push_screen_wait(dialog):
+        with self._holding() as answered:
+            sure = await self.app.push_screen_wait(dialog)
+            answered()
+            if sure:
                 await self._carry_out(asked.command)
+
+    @contextmanager
+    def _holding(self) -> Iterator[Callable[[], None]]:
+        """Hold the game (see the controller), and show that it waits until staff answer."""
+        with self.control.holding() as answered:
+
+            def show() -> None:
+                self.show_status()
+                self.show_staff()
+
+            def go_on() -> None:
+                answered()
+                show()
+
+            show()
+            yield go_on
 
     async def _carry_out(self, command: GameCommand) -> None:
         """Carry out a command that staff have confirmed."""

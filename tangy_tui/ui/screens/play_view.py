@@ -64,7 +64,7 @@ def next_line(shown: ViewSource) -> str:
     if control.stopped:
         return f"{stopped_words(control.stopped_by)}."
     if control.phase == "asking":
-        return text.WAITS_FOR_YOU
+        return text.TANGY_WAITS
     if control.welcomes:
         return text.welcomes_words(control.welcomes)
     planned = as_planned(world)
