@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from tangy_tui.speech.hearing_notes import HearingNote
 
 AGAIN_SOON = "Push again in a moment."
+ANSWERS_NEED_SCREEN = "--mic: Tangy listens to answers on the screen; here they are typed."
+LISTENING_NEEDS_SCREEN = "--mic: Tangy listens in a live game on the screen; there is none here."
 NOTHING_ASKED = "I heard yes or no, but there is no question."
 
 

@@ -6,15 +6,23 @@ import json
 import os
 import shlex
 import sys
+from collections.abc import Callable
+from dataclasses import fields
+from inspect import Parameter, Signature
 from pathlib import Path
 from textwrap import wrap
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
 from tangy_profiles.defaults import REGISTERED as REGISTERED
 from tangy_profiles.errors import TangyError
 from tangy_tui.text.command_line import no_option
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    Options = TypeVar("Options", bound=DataclassInstance)
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, nothing else.")]
 Seed = Annotated[int | None, typer.Option(help="Repeat the same simulated games.")]
@@ -37,6 +45,35 @@ RoomName = Annotated[
 ]
 Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
 Games = Annotated[int, typer.Option(min=1, help="How many games.")]
+Lines = Annotated[bool, typer.Option("--plain", help="Use lines instead of a screen.")]
+
+
+def takes(kind: type[Options]) -> Callable[[Callable[[Options], None]], Callable[..., None]]:
+    """Make a verb of a function: Typer reads a parameter from each field of its dataclass.
+
+    Each field has a default.
+    """
+    types = get_type_hints(kind, include_extras=True)
+    parameters = [
+        Parameter(
+            field.name,
+            Parameter.KEYWORD_ONLY,
+            default=field.default,
+            annotation=types[field.name],
+        )
+        for field in fields(kind)
+    ]
+
+    def verb_of(run: Callable[[Options], None]) -> Callable[..., None]:
+        def verb(**given: Any) -> None:
+            run(kind(**given))
+
+        verb.__name__, verb.__doc__, verb.__module__ = run.__name__, run.__doc__, run.__module__
+        verb.__annotations__ = {one.name: one.annotation for one in parameters}
+        verb.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+        return verb
+
+    return verb_of
 
 
 def hand_on_options(context: typer.Context) -> None:

@@ -15,6 +15,7 @@ from tangy_tui.verbs.common import (
     Ascii,
     Data,
     Json,
+    Lines,
     Seed,
     Users,
     print_json,
@@ -25,6 +26,7 @@ from tangy_tui.verbs.opening import full_screen, open_workspace, say_notices
 if TYPE_CHECKING:
     from tangy_profiles.drill_sheet import Sheet
     from tangy_tui.app.workspace import Workspace
+    from tangy_tui.monitoring.drill import Drill
 
 
 def drill(
@@ -38,9 +40,7 @@ def drill(
     discard: Annotated[
         bool, typer.Option("--discard", help="Begin a new drill, whatever was interrupted.")
     ] = False,
-    plain_lines: Annotated[
-        bool, typer.Option("--plain", help="Use lines instead of a screen.")
-    ] = False,
+    plain_lines: Lines = False,
     activity: ActivityName = "",
     users: Users = REGISTERED,
     data: Data = None,
@@ -60,57 +60,59 @@ def drill(
         workspace.activity.need_cards()
         name = workspace.teacher if who is None else read_name(who, "--who: a name")
         if scores:
-            from tangy_profiles.codec import encode
-            from tangy_tui.monitoring.drill_log import read_sheets
-            from tangy_tui.text.drills import sheets_lines
-            from tangy_tui.text.times import local_time
-
-            only = "" if who is None else name
-            if as_json:
-                sheets = read_sheets(workspace.store, only)
-                print_json([{"at": sheet.at, **encode(sheet)} for sheet in sheets])
-            else:
-                for line in sheets_lines(read_sheets(workspace.store), local_time, only):
-                    print_line(line)
+            _print_scores(workspace, "" if who is None else name, as_json=as_json)
             return
-        screen = not (plain_lines or as_json) and full_screen()
         past = _interrupted(workspace, name, resume=resume, discard=discard)
-        if screen:
+        if not (plain_lines or as_json) and full_screen():
             from tangy_tui.ui.run import run_drill
 
             past = past if resume else None  # otherwise the screen asks
             raise typer.Exit(
                 run_drill(
-                    workspace,
-                    rounds=rounds,
-                    seed=seed,
-                    who=name,
-                    ascii_only=ascii_only,
-                    past=past,
+                    workspace, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only, past=past
                 )
             )
         past = _by_lines(workspace, past, anew=as_json and not resume)
         from tangy_tui.app.drill_opening import open_drill
-        from tangy_tui.console.drills import drill_by_lines
-        from tangy_tui.console.inputs import line_reader
-        from tangy_tui.text.drills import left_words
 
         if not as_json:
             print_line(PREPARING_DRILL)
-        made = open_drill(workspace, name, seed=seed, rounds=rounds, past=past)
-        if not as_json:
-            drill_by_lines(made, print_line, line_reader(None))
-            return
-        try:
-            drill_by_lines(made, lambda _: None, line_reader(None), strict=True)
-        except KeyboardInterrupt:
-            say_notices([left_words(made)])
-            raise
-        if not made.over:
-            say_notices([left_words(made)])
-        from tangy_profiles.codec import encode
+        _hold(open_drill(workspace, name, seed=seed, rounds=rounds, past=past), as_json=as_json)
 
-        print_json(encode(made.sheet))
+
+def _print_scores(workspace: Workspace, only: str, *, as_json: bool) -> None:
+    """Print the score sheets of everybody, or of one person `only`."""
+    from tangy_profiles.codec import encode
+    from tangy_tui.monitoring.drill_log import read_sheets
+    from tangy_tui.text.drills import sheets_lines
+    from tangy_tui.text.times import local_time
+
+    if as_json:
+        sheets = read_sheets(workspace.store, only)
+        print_json([{"at": sheet.at, **encode(sheet)} for sheet in sheets])
+    else:
+        for line in sheets_lines(read_sheets(workspace.store), local_time, only):
+            print_line(line)
+
+
+def _hold(made: Drill, *, as_json: bool) -> None:
+    """Hold a drill by lines; with JSON, print its score sheet."""
+    from tangy_profiles.codec import encode
+    from tangy_tui.console.drills import drill_by_lines
+    from tangy_tui.console.inputs import line_reader
+    from tangy_tui.text.drills import left_words
+
+    if not as_json:
+        drill_by_lines(made, print_line, line_reader(None))
+        return
+    try:
+        drill_by_lines(made, lambda _: None, line_reader(None), strict=True)
+    except KeyboardInterrupt:
+        say_notices([left_words(made)])
+        raise
+    if not made.over:
+        say_notices([left_words(made)])
+    print_json(encode(made.sheet))
 
 
 def _interrupted(workspace: Workspace, who: str, *, resume: bool, discard: bool) -> Sheet | None:

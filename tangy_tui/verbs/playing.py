@@ -13,8 +13,9 @@ from tangy_profiles.reading import plain
 from tangy_tui.text.outcomes import fault_left, injecting_words
 from tangy_tui.text.policies import notice_words
 from tangy_tui.text.questions import TOO_EARLY
-from tangy_tui.verbs.common import print_json, print_line
-from tangy_tui.verbs.opening import say_notices
+from tangy_tui.verbs.common import as_given, print_json, print_line
+from tangy_tui.verbs.hearing import Listening
+from tangy_tui.verbs.opening import full_screen, say_notices
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
@@ -49,6 +50,50 @@ Expert = Annotated[
 ]
 SCRIPTED = "scripted"
 """Answers, or clears faults, by the activity's expected behaviours."""
+
+
+class GameOptions:
+    """The options that `tangy play` and `tangy live` share; each lists them in its own order."""
+
+    headless: bool
+    plain_lines: bool
+    mic: str | None
+    hands_free: bool
+    spoken_answers: bool
+    mode: str | None
+    data: Path | None
+    as_json: bool
+
+    @property
+    def listening(self) -> Listening:
+        """The options for speech input."""
+        return Listening(self.mic, self.hands_free, self.spoken_answers, self.mode)
+
+    @property
+    def report(self) -> str:
+        """The command for the report of the games."""
+        return f"tangy report{as_given(self.data)}"
+
+    def opens_screen(self, needs_screen: str) -> tuple[bool, int]:
+        """Return whether a screen opens, and the file descriptor of the microphone's sound.
+
+        Args:
+            needs_screen: says that a microphone needs a screen.
+
+        Raises:
+            TangyError: options exclude each other.
+        """
+        from tangy_tui.console.inputs import keys_from_terminal
+
+        headless = self.headless or self.as_json
+        listens = self.mic == "-" and not headless
+        sound = keys_from_terminal(None) if listens else 0  # before checking for a screen
+        if self.plain_lines and headless:
+            raise TangyError("--plain is for staff at the lines: leave --headless and --json out.")
+        screen = not (headless or self.plain_lines) and full_screen()
+        if self.mic is not None and not screen:
+            raise TangyError(needs_screen)
+        return screen, sound
 
 
 def tell_small_room(workspace: Workspace) -> None:

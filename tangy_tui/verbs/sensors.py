@@ -11,7 +11,16 @@ from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.defaults import USUAL_ROBOT
 from tangy_tui.text.cameras import NO_SOURCE
 from tangy_tui.verbs.cards import DeckSeed
-from tangy_tui.verbs.common import REGISTERED, ActivityName, Ascii, Data, Json, Seed, print_json
+from tangy_tui.verbs.common import (
+    REGISTERED,
+    ActivityName,
+    Ascii,
+    Data,
+    Json,
+    Lines,
+    Seed,
+    print_json,
+)
 from tangy_tui.verbs.opening import full_screen, open_workspace
 
 if TYPE_CHECKING:
@@ -40,9 +49,7 @@ def sensors(
     seconds: Annotated[
         float, typer.Option(min=0.1, help="How long to watch, without a screen.")
     ] = 3.0,
-    plain_lines: Annotated[
-        bool, typer.Option("--plain", help="Use lines instead of a screen.")
-    ] = False,
+    plain_lines: Lines = False,
     deck_seed: DeckSeed = USUAL_SEED,
     activity: ActivityName = "",
     seed: Seed = None,
