@@ -47,6 +47,7 @@ WAITS = {
 
 WAITS_FOR_YOU = "waits for your answer"
 """The status while Tangy's question to staff is open."""
+FINDS_ITS_PLACE = "finds its place"
 WAITS_SHORT = {"walking": "lets somebody pass", "standing": "somebody is in the way"}
 """The same, shorter, for a line with other facts."""
 
@@ -75,6 +76,13 @@ def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
         return ""
     waits = f" {words}" if (words := WAITS.get(lets)) else ""
     return f"Tangy drives to {'the front' if going == FRONT else name(going)}.{waits}"
+
+
+def short_going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
+    """Tell the same in short, for the header."""
+    if not going:
+        return ""
+    return WAITS_SHORT.get(lets) or f"drives to {'the front' if going == FRONT else name(going)}"
 
 
 def proposal_words(proposal: Proposal, name: Callable[[str], str], key: str = "Y") -> str:

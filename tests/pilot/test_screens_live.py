@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -532,6 +533,31 @@ async def test_the_game_waits_while_staff_are_asked_about_a_call(
         await until_shown(pilot, lambda: live(pilot).control.phase == "running")
         assert line.status.note != WAITS_FOR_YOU
         await until_shown(pilot, lambda: len(world.called) > count)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("size", "faults"), [(SMALL, "back"), ((160, 45), "leave")])
+async def test_esc_leads_back_to_now_before_it_asks_to_leave(
+    run: Run, program: Program, link: HeldLink, size: tuple[int, int], faults: str
+) -> None:
+    def esc(leads: str) -> bool:
+        return f"esc {leads}" in pilot.lines()[-1]
+
+    async with run(app=program, size=size) as pilot:
+        await paused_after(pilot, link, 3)
+        for key, leads in (("u", "back"), ("6", faults), ("3", "back")):
+            await until_shown(pilot, partial(esc, "leave"))
+            await pilot.press(key)
+            await until_shown(pilot, partial(esc, leads))
+            if leads == "back":
+                await pilot.press("escape")
+                await until_shown(pilot, lambda: " Now " in pilot.text())
+        await until_shown(pilot, partial(esc, "leave"))
+        await pilot.press("3")
+        await pilot.resize_terminal(160, 45)
+        await pilot.press("escape")
+        await pilot.press("escape")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
 
 
 @pytest.mark.slow

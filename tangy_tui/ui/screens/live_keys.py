@@ -46,9 +46,17 @@ CARDS_ONLY, FACTS_ONLY = ("call_again", "void_call", "whose_card"), ("tell",)
 
 
 def keys(
-    *, going: bool, over: bool = False, cards: bool = True, tells: bool = False
+    *,
+    going: bool,
+    over: bool = False,
+    cards: bool = True,
+    tells: bool = False,
+    now: bool = True,
 ) -> tuple[str | Key, ...]:
-    """Return the keys and their names while the game runs, is paused, or is over."""
+    """Return the keys and their names while the game runs, is paused, or is over.
+
+    `now`: the panel *Now* is visible; from others, Esc leads back to it.
+    """
     if over:
         return play_keys.keys(going=going, over=True)
     return (
@@ -58,5 +66,5 @@ def keys(
         *(("slower", "faster") if cards else ()), "autonomy",
         *(("undo:take back",) if cards else ()), *(("presence",) if cards else ()), "messages",
         *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "inside",
-        ("1-7", "show"), "back:leave", "help",
+        ("1-7", "show"), "back:leave" if now else "back", "help",
     )  # fmt: skip
