@@ -3,32 +3,40 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards import extent, synthesis
+from tangy_hw.perception.cards.cell_maps import (
+    HALF,
+    around,
+    cells,
+    centres,
+    corners,
+    disc,
+    dot,
+    ring,
+    sides,
+    whole_cells,
+)
+from tangy_hw.perception.cards.layers import CardLayers, half_maps, layers_of
+from tangy_hw.perception.cards.number_correlation import INNER, numbers_read
 from tangy_hw.perception.cards.rectification import RIM, SIDE, RectifiedGrid
 from tangy_profiles.card_face import CardLayout
-from tangy_profiles.card_picture import draw_number
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Picture = NDArray[Any]
     Real = NDArray[Any]
 
-HALF = SIDE // 2  # pixels of a cell in the half-size maps
 AWAY = 8  # pixels from a cell's centre within which the centre of a chip is searched
 BEYOND = 12  # pixels for chips of the neighbouring cells
 SPOTS, APART = 11, 3  # spots per side of a cell with its surroundings; pixels between spots
 OUTSIDE = 4, 10  # pixels outside the grid that show objects reaching in
 STRANGE, DARK = 0.22, 0.25  # limits of paper: difference from grey, and brightness
-INNER = 26  # pixels of a cell's middle with its number
 LARGEST = 1.4  # scale above which details do not increase
 INKED = 80  # percentile of the number contrasts of a card that counts as ink on paper
-SHIFT = 2  # pixels that a number may be off its place
 
-NAMES = (
+OWN_NAMES = (
     "print", "print here", "own number", "crossings least", "crossings mean",
     "colour disc", "colour ring", "colour uneven", "change disc", "change ring",
     "light disc", "light ring", "light uneven", "red", "blue", "offset",
@@ -40,8 +48,10 @@ NAMES = (
     "dyed", "dyed middle", "dyed around", "darker", "darker middle", "lighter middle", "disc",
     "disc to a line", "disc beyond", "disc over low", "disc under high", "best over low",
     "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
-    "black", *extent.NAMES, *synthesis.NAMES,
+    "black", *extent.NAMES,
 )  # fmt: skip
+"""Names of the features that this module measures, in order."""
+NAMES = (*OWN_NAMES, *synthesis.NAMES)
 """Names of the first features, in order."""
 SEEN = ("colour", "lighter", "unlike")
 """Layers of the remaining features, spot by spot in a cell and around it.
@@ -72,98 +82,242 @@ class CellFeatures:
 
 def features_of(flat: RectifiedGrid, face: CardLayout, numbers: tuple[int, ...]) -> CellFeatures:
     """Measure the cells of a card."""
-    import cv2
     import numpy as np
 
     rows, columns = face.deck.rows, len(face.deck.columns)
-    smooth = cv2.GaussianBlur(flat.picture, (3, 3), 0)
-    colour = smooth.astype(np.float32) + 1
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (25, 25))
-    white = cv2.GaussianBlur(cv2.dilate(smooth, kernel).astype(np.float32) + 1, (0, 0), 8)
-    shown = colour / white
-    light, tint = _light_and_tint(shown)
-    blurred = cv2.GaussianBlur(flat.expected, (0, 0), min(2.5, 0.55 / flat.scale))
-    expected = blurred.astype(np.float32) / 255
+    layers = layers_of(flat)
+    maps = half_maps(layers)
+    dots = dot(np.ascontiguousarray(maps[..., :3]))
+    read = numbers_read(layers.light, face, numbers, flat.scale)
+    chips = _chips_of(maps, centres(rows, columns))
+    signed = np.dstack([layers.dye, layers.lighter])
+    features = {
+        **_print_features(read, flat, rows, columns),
+        **_chip_features(chips),
+        **_cell_features(maps, dots, layers, rows, columns),
+        **_extent_features(maps, dots, chips),
+        **_signed_features(signed, chips.places, read),
+        "black": _blackness(read, layers.expected, rows, columns),
+    }
+    own = np.stack([features[name] for name in OWN_NAMES], 1)
+    named = np.hstack([own, synthesis.compared(flat, layers.expected)]).astype(np.float32)
+    spots = _spots(np.dstack([signed, layers.shown]), chips.places)
+    strange = layers.full_tint > STRANGE * np.maximum(layers.full_light, 0.05)
+    strange |= layers.full_light < DARK
+    bare = layers.expected > 0.9
+    beside = _beside(np.where(bare, strange, False), bare, rows, columns)
+    return CellFeatures(np.hstack([named, spots]), read[:, :2], beside)
 
-    read = _numbers_read(light, face, numbers, flat.scale)
-    inked = light[(expected < 0.25)]
-    ink = float(np.clip(np.percentile(inked, 30), 0.02, 0.7)) if inked.size else 0.3
-    paper = np.median(white[RIM:-RIM:4, RIM:-RIM:4].reshape(-1, 3), 0)
-    change = np.abs(light - (ink + (1 - ink) * expected))
-    full_light, full_tint = _light_and_tint(colour / paper)
-    least = cv2.min(cv2.min(*cv2.split(flat.picture)[:2]), flat.picture[..., 2])
-    layers = [
-        tint, change, light, shown[..., 2] - shown[..., 1], shown[..., 0] - shown[..., 1],
-        full_light, full_tint, least > 250, tint**2, light**2,
-    ]  # fmt: skip
-    size = flat.picture.shape[1] // 2, flat.picture.shape[0] // 2
-    maps = np.stack(
-        [
-            cv2.resize(layer.astype(np.float32), size, interpolation=cv2.INTER_AREA)
-            for layer in layers
-        ],
-        -1,
-    )
-    in_disc, first = _disc(maps), np.ascontiguousarray(maps[..., :3])
-    in_ring = _ring(first)
-    chipped = in_disc[..., 0] - in_ring[..., 0] + 0.7 * (in_disc[..., 1] - in_ring[..., 1])
 
-    start = RIM // 2
-    cell = np.arange(rows * columns)
-    y = start + cell // columns * HALF + HALF // 2
-    x = start + cell % columns * HALF + HALF // 2
-    # Search beyond the cell too: a chip centred there marks a neighbour.
+@dataclass(frozen=True)
+class _Places:
+    """The most chip-like place in each cell of half-size maps; all (cells,).
+
+    `y` and `x` are the cell's centre, `dy` and `dx` the offset from there, `strength` how chip-like
+    the place is, and `beyond` how much more so a place just outside the cell is.
+    """
+
+    y: Real
+    x: Real
+    dy: Real
+    dx: Real
+    strength: Real
+    beyond: Real
+
+    @property
+    def best(self) -> tuple[Real, Real]:
+        """The row and the column of the place."""
+        return self.y + self.dy, self.x + self.dx
+
+    @property
+    def off_line(self) -> Real:
+        """The larger of the offsets down and across, in cells."""
+        import numpy as np
+
+        return np.asarray(np.maximum(np.abs(self.dx), np.abs(self.dy)) / HALF)
+
+
+def _search(likeness: Real, middle: tuple[Real, Real]) -> _Places:
+    """Find the most chip-like place in each cell.
+
+    The search covers the neighbouring cells too: a chip that is centred there marks those.
+    """
+    import numpy as np
+
+    y, x = middle
     span = np.arange(-BEYOND, BEYOND + 1)
-    wide = np.pad(chipped, BEYOND, mode="edge")
+    wide = np.pad(likeness, BEYOND, mode="edge")
     wide = wide[(y[:, None] + BEYOND + span)[:, :, None], (x[:, None] + BEYOND + span)[:, None]]
     inner = slice(BEYOND - AWAY, BEYOND + AWAY + 1)
     side = 2 * AWAY + 1
     best = wide[:, inner, inner].reshape(-1, side * side).argmax(1)
     dy, dx = best // side - AWAY, best % side - AWAY
-    at, ringed, middle = in_disc[y + dy, x + dx], in_ring[y + dy, x + dx], in_disc[y, x]
-    deviation = np.sqrt(np.maximum(at[:, 8:10] - at[:, (0, 2)] ** 2, 0))
+    strength = likeness[y + dy, x + dx]
+    return _Places(y, x, dy, dx, strength, wide.max((1, 2)) - strength)
 
-    dots = _dot(first)
-    corners = _corners(dots, rows, columns)
-    sides = _sides(dots[..., 1], rows, columns)
-    whites = cv2.resize(white, size, interpolation=cv2.INTER_AREA)[y, x] / paper
-    crossings = _around(flat.crossings.reshape(rows + 1, columns + 1))
-    inside = _cells(maps[..., 1], rows, columns), _cells(maps[..., 0], rows, columns)
-    strength = chipped[y + dy, x + dx]
-    strong = strength > 0.3
+
+@dataclass(frozen=True)
+class _Chips:
+    """The maps' means at the most chip-like `places`, each (cells, maps).
+
+    `at` is over the area of a chip, `ring` over the ring around it, and `middle` over a chip at the
+    cell's centre.
+    """
+
+    places: _Places
+    at: Real
+    ring: Real
+    middle: Real
+
+
+def _chips_of(maps: Real, middle: tuple[Real, Real]) -> _Chips:
+    import numpy as np
+
+    in_disc, in_ring = disc(maps), ring(np.ascontiguousarray(maps[..., :3]))
+    chipped = in_disc[..., 0] - in_ring[..., 0] + 0.7 * (in_disc[..., 1] - in_ring[..., 1])
+    places = _search(chipped, middle)
+    return _Chips(places, in_disc[places.best], in_ring[places.best], in_disc[middle])
+
+
+def _print_features(read: Real, flat: RectifiedGrid, rows: int, columns: int) -> dict[str, Real]:
+    """Return the features of the printed numbers and lines."""
+    import numpy as np
+
+    crossings = around(flat.crossings.reshape(rows + 1, columns + 1))
+    cells = len(read)
+    return {
+        "print": read[:, 0],
+        "print here": read[:, 2],
+        "own number": read[:, 0] - read[:, 1],
+        "number contrast": read[:, 3],
+        "crossings least": crossings.min(1),
+        "crossings mean": crossings.mean(1),
+        "scale": np.full(cells, np.log(min(flat.scale, LARGEST))),
+        "sharpness": np.full(cells, np.median(flat.crossings)),
+        "matched": np.full(cells, flat.matched / len(flat.crossings)),
+    }
+
+
+def _chip_features(chips: _Chips) -> dict[str, Real]:
+    """Return the features of the most chip-like place in each cell, and of the cell's centre."""
+    import numpy as np
+
+    at, ringed, places = chips.at, chips.ring, chips.places
+    deviation = np.sqrt(np.maximum(at[:, 8:10] - at[:, (0, 2)] ** 2, 0))
+    strong = places.strength > 0.3
     kind = np.median(at[strong][:, [2, 3, 4]], 0) if strong.any() else np.full(3, 0.5)
-    row = [
-        read[:, 0], read[:, 2], read[:, 0] - read[:, 1], crossings.min(1), crossings.mean(1),
-        at[:, 0], ringed[:, 0], deviation[:, 0], at[:, 1], ringed[:, 1],
-        at[:, 2], ringed[:, 2], deviation[:, 1], at[:, 3], at[:, 4], np.hypot(dx, dy) / HALF,
-        middle[:, 0], middle[:, 1], inside[0].mean((1, 2)), inside[1].mean((1, 2)),
-        corners[:, :, 0].min(1), corners[:, :, 0].max(1), corners[:, :, 2].min(1),
-        corners[:, :, 1].min(1), corners[:, :, 1].max(1), whites.mean(1),
-        whites[:, 2] - whites[:, 1], whites[:, 0] - whites[:, 1], at[:, 5], at[:, 6], at[:, 7],
-        np.abs(at[:, [2, 3, 4]] - kind).sum(1), strength,
-        np.full(len(cell), np.log(min(flat.scale, LARGEST))),
-        np.full(len(cell), np.median(flat.crossings)),
-        np.full(len(cell), flat.matched / len(flat.crossings)), read[:, 3], sides.max(1),
-        *extent.ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx, HALF),
-        np.maximum(np.abs(dx), np.abs(dy)) / HALF, wide.max((1, 2)) - strength,
-        np.abs(dy) / HALF, np.abs(dx) / HALF,
-    ]  # fmt: skip
-    lighter = light - (ink + (1 - ink) * expected)
-    dye = shown[..., (2, 0)] - shown[..., 1:2]
-    dye -= np.median(dye[RIM:-RIM:4, RIM:-RIM:4].reshape(-1, 2), 0)
-    row += _plainly(np.dstack([dye, lighter]), (y, x), (strength, read[:, 0]))
+    return {
+        "colour disc": at[:, 0],
+        "colour ring": ringed[:, 0],
+        "colour uneven": deviation[:, 0],
+        "change disc": at[:, 1],
+        "change ring": ringed[:, 1],
+        "light disc": at[:, 2],
+        "light ring": ringed[:, 2],
+        "light uneven": deviation[:, 1],
+        "red": at[:, 3],
+        "blue": at[:, 4],
+        "offset": np.hypot(places.dx, places.dy) / HALF,
+        "colour middle": chips.middle[:, 0],
+        "change middle": chips.middle[:, 1],
+        "full light": at[:, 5],
+        "full colour": at[:, 6],
+        "bright": at[:, 7],
+        "kind": np.abs(at[:, [2, 3, 4]] - kind).sum(1),
+        "best": places.strength,
+        "to a line": places.off_line,
+        "beyond": places.beyond,
+        "down": np.abs(places.dy) / HALF,
+        "across": np.abs(places.dx) / HALF,
+    }
+
+
+def _cell_features(
+    maps: Real, dots: Real, layers: CardLayers, rows: int, columns: int
+) -> dict[str, Real]:
+    """Return the features of each whole cell, its corners and its sides."""
+    import cv2
+
+    corner = corners(dots, rows, columns)
+    size = maps.shape[1], maps.shape[0]
+    middle = centres(rows, columns)
+    white = cv2.resize(layers.near, size, interpolation=cv2.INTER_AREA)[middle] / layers.paper
+    return {
+        "change cell": cells(maps[..., 1], rows, columns).mean((1, 2)),
+        "colour cell": cells(maps[..., 0], rows, columns).mean((1, 2)),
+        "corner colour least": corner[:, :, 0].min(1),
+        "corner colour most": corner[:, :, 0].max(1),
+        "corner light least": corner[:, :, 2].min(1),
+        "corner change least": corner[:, :, 1].min(1),
+        "corner change most": corner[:, :, 1].max(1),
+        "white light": white.mean(1),
+        "white red": white[:, 2] - white[:, 1],
+        "white blue": white[:, 0] - white[:, 1],
+        "side change": sides(dots[..., 1], rows, columns).max(1),
+    }
+
+
+def _extent_features(maps: Real, dots: Real, chips: _Chips) -> dict[str, Real]:
+    """Return the features of how far the object on each cell extends."""
+    y, x = chips.places.best
+    arm, way_out = extent.ways_out(dots[..., 0] + dots[..., 1], y, x, HALF)
+    same = extent.same_ways(dot(maps[..., 2:5].copy()), y, x, chips.at[:, 2:5], HALF)
+    return {"arm": arm, "way out": way_out, **dict(zip(extent.NAMES, same, strict=True))}
+
+
+def _signed_features(signed: Real, chips: _Places, read: Real) -> dict[str, Real]:
+    """Return the features of faint discs by signed means, in which noise cancels out.
+
+    They are also compared with the card's other cells, because chips are mostly of one kind.
+
+    Args:
+        signed: two colour differences, and the brightness relative to the print, each (rows,
+            columns).
+        chips: the most chip-like places by unsigned means.
+        read: the correlations of the numbers.
+    """
+    import cv2
+    import numpy as np
+
+    small = (signed.shape[1] // 2, signed.shape[0] // 2)
+    maps = cv2.resize(signed, small, interpolation=cv2.INTER_AREA)
+    inner, outer = disc(maps), ring(maps)
+    apart = inner - outer
+    dyed = np.hypot(apart[..., 0], apart[..., 1])
+    dark = -apart[..., 2]
+    middle = chips.y, chips.x
+    places = _search(dyed + np.abs(dark), middle)
+    at = places.best
+    dye = np.hypot(inner[at][:, 0], inner[at][:, 1])
+    features = {
+        "dyed": dye,
+        "dyed middle": np.hypot(inner[middle][:, 0], inner[middle][:, 1]),
+        "dyed around": dyed[at],
+        "darker": dark[at],
+        "darker middle": dark[middle],
+        "lighter middle": inner[middle][:, 2],
+        "disc": places.strength,
+        "disc to a line": places.off_line,
+        "disc beyond": places.beyond,
+    }
+    compared = {
+        "disc": places.strength, "best": chips.strength, "dyed": dye, "print": read[:, 0]
+    }  # fmt: skip
+    for name, value in compared.items():
+        low, high = np.percentile(value, (20, 90))
+        features |= {f"{name} over low": value - low, f"{name} under high": value - high}
+    return features
+
+
+def _blackness(read: Real, expected: Real, rows: int, columns: int) -> Real:
+    """Return how much ink of its own number each cell shows, 1 for a clean number: (cells,)."""
+    import numpy as np
+
     edge = (SIDE - INNER) // 2
-    printed = _whole_cells(expected, rows, columns)[:, edge : edge + INNER, edge : edge + INNER]
-    black = read[:, 2] * read[:, 3] / np.maximum(printed.std((1, 2)), 1e-3)
+    middles = whole_cells(expected, rows, columns)[:, edge : edge + INNER, edge : edge + INNER]
+    black = read[:, 2] * read[:, 3] / np.maximum(middles.std((1, 2)), 1e-3)
     black /= max(float(np.percentile(black, INKED)), 0.02)
-    row.append(black)
-    row += extent.same_ways(_dot(maps[..., 2:5].copy()), y + dy, x + dx, at[:, 2:5], HALF)
-    named = np.hstack([np.stack(row, 1), synthesis.compared(flat, expected)]).astype(np.float32)
-    spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
-    bare = expected > 0.9
-    strange = (full_tint > STRANGE * np.maximum(full_light, 0.05)) | (full_light < DARK)
-    beside = _beside(np.where(bare, strange, False), bare, rows, columns)
-    return CellFeatures(np.hstack([named, spots]), read[:, :2], beside)
+    return np.asarray(black)
 
 
 def _beside(strange: Real, bare: Real, rows: int, columns: int) -> Real:
@@ -185,46 +339,7 @@ def _beside(strange: Real, bare: Real, rows: int, columns: int) -> Real:
     return np.asarray(found.ravel())
 
 
-def _plainly(layers: Real, middle: tuple[Real, Real], known: tuple[Real, Real]) -> list[Real]:
-    """Measure faint discs with signed means, in which noise cancels out.
-
-    `layers` (rows, columns, 3) are two colour differences, and the brightness relative to the
-    print. The results are also compared with the card's other cells, because chips are mostly of
-    one kind.
-    """
-    import cv2
-    import numpy as np
-
-    small = (layers.shape[1] // 2, layers.shape[0] // 2)
-    maps = cv2.resize(layers, small, interpolation=cv2.INTER_AREA)
-    inner, outer = _disc(maps), _ring(maps)
-    apart = inner - outer
-    dyed = np.hypot(apart[..., 0], apart[..., 1])
-    dark = -apart[..., 2]
-    strong = dyed + np.abs(dark)
-    y, x = middle
-    span = np.arange(-BEYOND, BEYOND + 1)
-    wide = np.pad(strong, BEYOND, mode="edge")
-    wide = wide[(y[:, None] + BEYOND + span)[:, :, None], (x[:, None] + BEYOND + span)[:, None]]
-    near = slice(BEYOND - AWAY, BEYOND + AWAY + 1)
-    side = 2 * AWAY + 1
-    best = wide[:, near, near].reshape(-1, side * side).argmax(1)
-    dy, dx = best // side - AWAY, best % side - AWAY
-    at = y + dy, x + dx
-    disc, dye = strong[at], np.hypot(inner[at][:, 0], inner[at][:, 1])
-    strength, printed = known
-    rows = [
-        dye, np.hypot(inner[y, x, 0], inner[y, x, 1]), dyed[at], dark[at], dark[y, x],
-        inner[y, x, 2], disc, np.maximum(np.abs(dx), np.abs(dy)) / HALF,
-        wide.max((1, 2)) - disc,
-    ]  # fmt: skip
-    for value in (disc, strength, dye, printed):
-        low, high = np.percentile(value, (20, 90))
-        rows += [value - low, value - high]
-    return rows
-
-
-def _spots(layers: Real, middle: tuple[Real, Real], best: tuple[Real, Real]) -> Real:
+def _spots(layers: Real, chips: _Places) -> Real:
     """Sample spots of each cell and its surroundings; return a row of `SEEN` for each."""
     import cv2
     import numpy as np
@@ -235,152 +350,9 @@ def _spots(layers: Real, middle: tuple[Real, Real], best: tuple[Real, Real]) -> 
     )
     dots = np.dstack([cv2.blur(part, (APART, APART)) for part in cv2.split(halved)])
     span = (np.arange(SPOTS) - SPOTS // 2) * APART
-    y, x = (place[:, None, None] for place in middle)
+    y, x = (place[:, None, None] for place in (chips.y, chips.x))
     here = dots[y + span[:, None], x + span]
-    there = dots[best][:, None, None, 3:]
+    there = dots[chips.best][:, None, None, 3:]
     unlike = np.abs(here[..., 3:] - there).sum(-1)
     rows: Real = np.stack([np.hypot(here[..., 0], here[..., 1]), here[..., 2], unlike], 1)
     return rows.reshape(len(rows), -1)
-
-
-def _light_and_tint(picture: Real) -> tuple[Real, Real]:
-    """Return the brightness of each pixel, and its difference from grey."""
-    import cv2
-
-    blue, green, red = cv2.split(picture)
-    light = (blue + green + red) / 3
-    return light, cv2.max(cv2.max(blue, green), red) - cv2.min(cv2.min(blue, green), red)
-
-
-def _numbers_read(light: Real, face: CardLayout, numbers: tuple[int, ...], scale: float) -> Real:
-    """Correlate each cell with the numbers of its column.
-
-    Returns:
-        For each cell (n, 4): the best correlation with its own number, with any other, with its own
-        at its exact place, and the contrast of the cell's middle.
-    """
-    import numpy as np
-
-    rows, columns = face.deck.rows, len(face.deck.columns)
-    cells = _whole_cells(light, rows, columns)
-    edge = (SIDE - INNER) // 2
-    found = np.zeros((rows * columns, 4), np.float32)
-    shifts = [(a, b) for a in range(-SHIFT, SHIFT + 1) for b in range(-SHIFT, SHIFT + 1)]
-    windows = np.stack(
-        [cells[:, edge + a : edge + a + INNER, edge + b : edge + b + INNER] for a, b in shifts],
-        1,
-    ).reshape(rows * columns, len(shifts), -1)
-    windows = windows - windows.mean(2, keepdims=True)
-    spread = np.linalg.norm(windows, axis=2, keepdims=True)
-    windows = windows / np.maximum(spread, 1e-3)
-    for place, column in enumerate(face.deck.columns):
-        prints = _prints(face, column.low, column.high, round(min(1.5, scale), 1))
-        here = np.arange(place, rows * columns, columns)
-        match = windows[here] @ prints.T  # (cells, shifts, numbers)
-        best = match.max(1)
-        for order, cell in enumerate(here):
-            own = numbers[cell] - column.low
-            others = np.delete(best[order], own)
-            found[cell] = (
-                best[order, own],
-                others.max() if others.size else -1.0,
-                match[order, len(shifts) // 2, own],
-                spread[cell, len(shifts) // 2, 0] / INNER,
-            )
-    return found
-
-
-@lru_cache(maxsize=1000)
-def _drawn(face: CardLayout, number: int) -> Picture:
-    return draw_number(face, number, SIDE)
-
-
-@lru_cache(maxsize=256)
-def _prints(face: CardLayout, low: int, high: int, scale: float) -> Real:
-    """Return templates of numbers at a scale, each a row with norm 1 and mean 0."""
-    import cv2
-    import numpy as np
-
-    edge = (SIDE - INNER) // 2
-    rows = []
-    for number in range(low, high + 1):
-        drawn = cv2.GaussianBlur(_drawn(face, number), (0, 0), min(2.5, 0.55 / scale))
-        inner = drawn[edge : edge + INNER, edge : edge + INNER].astype(np.float32).ravel()
-        inner = inner - inner.mean()
-        rows.append(inner / max(float(np.linalg.norm(inner)), 1e-3))
-    return np.array(rows, np.float32)
-
-
-def _disc(maps: Real) -> Real:
-    """Average over the area of a chip."""
-    import cv2
-
-    return cv2.GaussianBlur(maps, (13, 13), 2.4)
-
-
-def _ring(maps: Real) -> Real:
-    """Average over a ring around a chip."""
-    import cv2
-
-    outer, inner = 17, 13
-    whole = cv2.boxFilter(maps, -1, (outer, outer), normalize=False)
-    core = cv2.boxFilter(maps, -1, (inner, inner), normalize=False)
-    return (whole - core) / (outer**2 - inner**2)
-
-
-def _dot(maps: Real) -> Real:
-    import cv2
-
-    return cv2.blur(maps, (3, 3))
-
-
-def _cells(layer: Real, rows: int, columns: int) -> Real:
-    """Cut a map into its cells."""
-    start = RIM // 2
-    grid = layer[start : start + rows * HALF, start : start + columns * HALF]
-    cut: Real = grid.reshape(rows, HALF, columns, HALF).swapaxes(1, 2).reshape(-1, HALF, HALF)
-    return cut
-
-
-def _whole_cells(layer: Real, rows: int, columns: int) -> Real:
-    """Cut an image of the grid into its cells."""
-    grid = layer[RIM : RIM + rows * SIDE, RIM : RIM + columns * SIDE]
-    cut: Real = grid.reshape(rows, SIDE, columns, SIDE).swapaxes(1, 2).reshape(-1, SIDE, SIDE)
-    return cut
-
-
-def _around(at_crossings: Real) -> Real:
-    """Return the values at the four line crossings of each cell."""
-    import numpy as np
-
-    a = at_crossings
-    four: Real = np.stack([a[:-1, :-1], a[:-1, 1:], a[1:, :-1], a[1:, 1:]], -1)
-    return four.reshape(-1, 4)
-
-
-def _corners(dots: Real, rows: int, columns: int) -> Real:
-    """Sample the four corners of each cell, inside its lines."""
-    import numpy as np
-
-    cell = np.arange(rows * columns)
-    y = RIM // 2 + cell // columns * HALF
-    x = RIM // 2 + cell % columns * HALF
-    inset = 2
-    far = HALF - 1 - inset
-    places = [(inset, inset), (inset, far), (far, inset), (far, far)]
-    return np.stack([dots[y + a, x + b] for a, b in places], 1)
-
-
-def _sides(dots: Real, rows: int, columns: int) -> Real:
-    """Sample the middle of the four sides of each cell, inside its lines."""
-    import numpy as np
-
-    cell = np.arange(rows * columns)
-    y = RIM // 2 + cell // columns * HALF
-    x = RIM // 2 + cell % columns * HALF
-    half, inset = HALF // 2, 2
-    far = HALF - 1 - inset
-    return np.stack(
-        [dots[y + a, x + b] for a, b in [(inset, half), (far, half), (half, inset), (half, far)]],
-        1,
-    )
