@@ -93,7 +93,7 @@ def _extensions() -> Iterator[Finding]:
         extensions,
         problems,
     )
-    from tangy_profiles.persuading import METHODS
+    from tangy_profiles.persuading import PERSUASION_METHODS
     from tangy_tui.interaction.methods import added_method
 
     if not any(extensions(group) for group in GROUPS):
@@ -117,7 +117,7 @@ def _extensions() -> Iterator[Finding]:
     own: dict[Group, Iterable[str]] = {
         "drivers": DRIVERS,
         "activities": shipped_activities(),
-        "methods": METHODS,
+        "methods": PERSUASION_METHODS,
     }
     checks: dict[Group, Callable[[Extension], str]] = {
         "drivers": driver,

@@ -13,17 +13,17 @@ from tangy_profiles.extensions import extensions
 from tangy_profiles.reading import Table, nearest, plain
 
 MethodName = Literal["thompson", "bayes-ucb"]
-METHODS: tuple[MethodName, ...] = get_args(MethodName)
+PERSUASION_METHODS: tuple[MethodName, ...] = get_args(MethodName)
 
 
 def known_methods() -> tuple[str, ...]:
     """Return the names of the built-in methods, and of those of other packages."""
-    return tuple(dict.fromkeys((*METHODS, *extensions("methods"))))
+    return tuple(dict.fromkeys((*PERSUASION_METHODS, *extensions("methods"))))
 
 
 def is_method(name: str) -> bool:
     """Return whether there is a method of that name."""
-    return name in METHODS or name in extensions("methods")
+    return name in PERSUASION_METHODS or name in extensions("methods")
 
 
 PRIORS = ("uniform", "people")
@@ -36,7 +36,7 @@ LEAST_KEPT = 0.5
 
 
 def _method(name: str) -> str:
-    return name if is_method(name) else cast(str, one_of(*METHODS)(name))
+    return name if is_method(name) else cast(str, one_of(*PERSUASION_METHODS)(name))
 
 
 def _share(value: float) -> float:

@@ -43,7 +43,7 @@ A_PIECE = 100
 Rates = tuple[float, ...]
 """One person's probability of complying with each strategy."""
 
-METHODS: Mapping[str, PersuasionConfig] = {
+PUBLISHED_COMPARISON: Mapping[str, PersuasionConfig] = {
     "thompson": PersuasionConfig(),
     "bayes_ucb": PersuasionConfig("bayes-ucb"),
     "thompson_prior": PersuasionConfig(prior="people"),
@@ -55,10 +55,10 @@ METHODS: Mapping[str, PersuasionConfig] = {
 
 
 def compared() -> dict[str, PersuasionConfig]:
-    """Return what is compared: `METHODS`, and all other known methods by their own names."""
-    there = {chosen.method for chosen in METHODS.values()}
+    """Return the published comparison, and all other known methods by their own names."""
+    there = {chosen.method for chosen in PUBLISHED_COMPARISON.values()}
     others = [name for name in known_methods() if name not in there]
-    return {**METHODS, **{name: PersuasionConfig(name) for name in others}}
+    return {**PUBLISHED_COMPARISON, **{name: PersuasionConfig(name) for name in others}}
 
 
 @dataclass(frozen=True)
@@ -274,7 +274,7 @@ def run(strategies: int, people: int, seed: int, where: Where) -> dict[str, Any]
 
 
 def _is_added(name: str) -> bool:
-    return name in extensions("methods") and name not in METHODS
+    return name in extensions("methods") and name not in PUBLISHED_COMPARISON
 
 
 def _row(people: Sequence[Sequence[float]]) -> dict[str, Any]:

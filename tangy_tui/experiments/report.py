@@ -169,7 +169,7 @@ def _other_choices(choices: Sequence[Document]) -> Iterator[str]:
 
 def _methods(document: Document) -> Iterator[str]:
     crowds = document["crowds"]
-    yield heading(words.METHODS)
+    yield heading(words.OTHER_METHODS)
     yield paragraph(words.REGRET)
     for problem in document.get("not_compared", {}).values():
         yield paragraph(words.not_compared(problem))

@@ -16,7 +16,7 @@ from typing import Protocol, assert_never, cast
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import Extension, extensions
-from tangy_profiles.persuading import METHODS, PersuasionConfig
+from tangy_profiles.persuading import PERSUASION_METHODS, PersuasionConfig
 from tangy_profiles.reading import plain
 
 Counts = Mapping[str, tuple[int, int]]
@@ -196,7 +196,7 @@ class Forgetting:
 
 
 def _plain(name: str) -> Method:
-    own = next((method for method in METHODS if method == name), None)
+    own = next((method for method in PERSUASION_METHODS if method == name), None)
     if own is None:
         return added_method(extensions("methods")[name])
     match own:

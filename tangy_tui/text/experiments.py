@@ -126,7 +126,7 @@ def typing_words(typed: Document) -> tuple[str, str]:
 BEFORE_CONVERGENCE = "Sub-optimal strategies before convergence"
 OPTIMAL = "Optimal strategies over interactions"
 OTHERWISE = "Had it been chosen otherwise"
-METHODS = "Other ways to choose"
+OTHER_METHODS = "Other ways to choose"
 OTHER_CHOICES = (
     "The paper says neither how probably its people complied, nor how many optimal strategies "
     "in a row count as convergence. Without games, for people of whom each prefers one "

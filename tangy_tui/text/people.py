@@ -139,16 +139,16 @@ def what_works(world: str) -> str:
 
 NOBODY_KNOWN = "Nothing is known of anybody yet."
 
-METHODS: dict[MethodName, str] = {
+METHOD_TITLES: dict[MethodName, str] = {
     "thompson": "Thompson sampling, as in the paper",
     "bayes-ucb": "Bayes-UCB: tries less, settles sooner",
 }
-"""The names of the persuasion methods."""
+"""The titles of the persuasion methods."""
 
 
 def method_name(name: str) -> str:
     """Return the name of a method; that of another package by its own name."""
-    return next((words for known, words in METHODS.items() if known == name), name)
+    return next((words for known, words in METHOD_TITLES.items() if known == name), name)
 
 
 def method_title(name: str) -> str:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tangy_hw.perception.cards.reader import CardReader, CardReading
     from tangy_profiles.activity import Activity
 
-METHODS = ("tags", "paper")
+READERS = ("tags", "paper")
 
 
 def read_card(
@@ -73,12 +73,12 @@ def read_card(
     loaded = load_activity(activity)
     loaded.need_cards()
     numbers = None if called is None else _called(called, loaded)
-    if method not in METHODS:
+    if method not in READERS:
         raise TangyError(
-            plain(f"--method {method[:40]!r} is not known; {nearest(method, METHODS)}")
+            plain(f"--method {method[:40]!r} is not known; {nearest(method, READERS)}")
         )
-    if together and method != METHODS[0]:
-        raise TangyError(f"--together goes with --method {METHODS[0]} alone.")
+    if together and method != READERS[0]:
+        raise TangyError(f"--together goes with --method {READERS[0]} alone.")
     reader = CardReader(loaded.deck, deck_seed)
     read = reader.read
     if method == "paper":

@@ -133,9 +133,9 @@ def test_priors_help_for_similar_people_and_forgetting_for_changing_ones() -> No
 
 
 def test_every_known_method_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert list(algorithms.compared()) == list(algorithms.METHODS)
+    assert list(algorithms.compared()) == list(algorithms.PUBLISHED_COMPARISON)
     monkeypatch.setattr(algorithms, "known_methods", lambda: ("thompson", "bayes-ucb", "turns"))
-    assert list(algorithms.compared()) == [*algorithms.METHODS, "turns"]
+    assert list(algorithms.compared()) == [*algorithms.PUBLISHED_COMPARISON, "turns"]
     assert algorithms.compared()["turns"].method == "turns"
 
 

@@ -17,8 +17,8 @@ from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
 from tangy_profiles.codec import InvalidValue, decode, encode
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import (
-    METHODS,
     PAPER,
+    PERSUASION_METHODS,
     PersuasionConfig,
     read_persuading,
     spoken_persuading,
@@ -332,9 +332,9 @@ def test_an_activity_can_set_its_method() -> None:
 def test_each_method_has_an_implementation_and_words() -> None:
     from tangy_tui.text import people
 
-    assert set(people.METHODS) == set(METHODS)
-    made = {method_of(PersuasionConfig(name)).words for name in METHODS}
-    assert len(made) == len(METHODS), "two methods have the same words"
+    assert set(people.METHOD_TITLES) == set(PERSUASION_METHODS)
+    made = {method_of(PersuasionConfig(name)).words for name in PERSUASION_METHODS}
+    assert len(made) == len(PERSUASION_METHODS), "two methods have the same words"
     assert {"Thompson sampling", "Bayes-UCB"} <= made
 
 

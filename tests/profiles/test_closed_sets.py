@@ -13,7 +13,7 @@ import pytest
 
 from tangy_profiles.effects import EFFECTS
 from tangy_profiles.health import STATES, DeviceState
-from tangy_profiles.persuading import METHODS, PersuasionConfig
+from tangy_profiles.persuading import PERSUASION_METHODS, PersuasionConfig
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.interaction.methods import method_of
 from tangy_tui.monitoring import evidence
@@ -76,10 +76,12 @@ def test_no_world_implements_an_unknown_effect() -> None:
     assert {word for _, _, told in matches() for word in told} == set(EFFECTS)
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", PERSUASION_METHODS)
 def test_every_method_of_persuasion_has_an_implementation_and_words(name: str) -> None:
     assert method_of(PersuasionConfig(name)).words
-    assert name in people.METHODS, f"METHODS of {people.__name__} has no words for {name!r}"
+    assert name in people.METHOD_TITLES, (
+        f"METHOD_TITLES of {people.__name__} has no words for {name!r}"
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -25,7 +25,7 @@ from tangy_profiles.events import EventRecord, Unknown, kinds, read_record
 from tangy_profiles.game_records import MoveKind
 from tangy_profiles.health import Fact
 from tangy_profiles.people_records import PersonAdded
-from tangy_profiles.persuading import METHODS, PERIODS, PRIORS
+from tangy_profiles.persuading import PERIODS, PERSUASION_METHODS, PRIORS
 from tangy_profiles.records import kind
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import ActivityState, Request, Situation, UserState
@@ -125,7 +125,7 @@ NUMBERS = st.integers(-(10**9), 10**9) | st.floats(-1e9, 1e9)
 OF_FIELDS: dict[str, st.SearchStrategy[Any]] = {
     "trees": st.integers(1, 1_000),
     "min_samples_leaf": st.integers(1, 1_000_000),
-    "method": st.sampled_from(METHODS),
+    "method": st.sampled_from(PERSUASION_METHODS),
     "prior": st.sampled_from(PRIORS),
     "forgetting": st.floats(0.5, 1),
     "forgetting_per": st.sampled_from(PERIODS),

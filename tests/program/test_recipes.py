@@ -91,7 +91,7 @@ code = "arm-failed\"""",
 def test_the_recipe_for_a_method_of_persuasion_works(copy: Path, taught: Path) -> None:
     methods, names = "tangy_tui/interaction/methods.py", "profiles/tangy_profiles/persuading.py"
     words = "tangy_tui/text/people.py"
-    places("Add a method of persuasion", methods, names, words, "`METHODS`", "`_plain`")
+    places("Add a method of persuasion", methods, names, words, "`METHOD_TITLES`", "`_plain`")
     edit(copy / names, '["thompson", "bayes-ucb"]', '["thompson", "bayes-ucb", "turns"]')
     edit(
         copy / methods,
