@@ -52,6 +52,10 @@ class PlannedGame:
     """The people who have left, or have not come yet."""
     all_called = False
     """Whether no number is left: each person gets a visit before the game ends."""
+    looking = ""
+    """The person whose card the robot is reading, before which no next step is decided."""
+    said = ""
+    """What the robot said last in this game, "" if the world cannot tell or it said nothing."""
     visiting = ""
     """The person who gets a visit without a request; "" for none."""
     _visited: dict[str, int]
@@ -73,6 +77,7 @@ class PlannedGame:
         """Apply the plan at the beginning of a game."""
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
         self.winner, self.visiting, self.all_called = "", "", False
+        self.looking = self.said = ""
         self._asked_before = None
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
         self._visited, self._row_began = {}, 0.0

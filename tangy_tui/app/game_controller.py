@@ -55,7 +55,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.pausing_games import PausingGames
 from tangy_tui.app.plan_controls import GamePlanControls
 from tangy_tui.app.robot_controls import RobotControls
-from tangy_tui.app.staff_view import StaffView, StaffWatch
+from tangy_tui.app.staff_view import StaffView, StaffWatch, next_step
 from tangy_tui.learning.verification import Verification
 from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -93,6 +93,8 @@ class GameController(PausingGames):
         self.supervision = supervision
         self.autonomy = AutonomyDial()
         self.stopped = self.taking_over = False
+        self.stepping = False
+        """Whether a step is being carried out now."""
         self.nudge = threading.Event()
         """Set when something changed, for the thread that waits to call `next`."""
         self.changed: Callable[[], object] = lambda: None
@@ -189,11 +191,21 @@ class GameController(PausingGames):
                 return []
             if self.single:
                 self.single, self.going = False, False
+            self.stepping = True
             try:
                 return game.step()
             finally:
+                self.stepping = False
                 self.autonomy.done()
                 self.view()
+
+    @property
+    def counts_down(self) -> bool:
+        """Whether Tangy does nothing but wait for the time of the next call."""
+        if self.phase != "running" or self.stepping:
+            return False
+        ahead = next_step(self.supervision.world, self.supervision.policy)
+        return ahead is not None and self.robot.rests(ahead[0])
 
     def view(self) -> StaffView:
         """Return the present state of the game for staff; from any thread, at any time."""
@@ -374,7 +386,9 @@ class GameController(PausingGames):
         with self._turn, serving():
             if refused := self.refusal(asking=False):
                 return [refused]
+            self.stepping = True
             try:
                 return list(self.supervision.answer(behaviour, target, self.by))
             finally:
+                self.stepping = False
                 self._tell_all()

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import Count, Sparse
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_profiles.state import FRONT, ActivityState
@@ -42,6 +43,10 @@ class PersonNow:
     their_turn: bool = False
     goes_round: bool = True
     """Whether the robot visits people in this game."""
+    claims: Sparse[bool] = False
+    """Whether their card wins by a claim, so that the robot goes there first."""
+    calls_first: Sparse[Count] = 0
+    """How many numbers are called before the robot goes there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +127,10 @@ class StaffWatch:
         return StaffView(
             0.0 if self._began is None else max(0.0, now - self._began),
             scene.called,
-            tuple(_with_facts(self._person(person, scene, now, robot), world) for person in people),
+            tuple(
+                _with_facts(_with_plan(self._person(person, scene, now, robot), planned), world)
+                for person in people
+            ),
             0.0 if planned is None else planned.pace,
             None if self._paused is None or self._ended is not None else now - self._paused,
         )
@@ -143,6 +151,14 @@ class StaffWatch:
             None if visited is None else now - visited,
             scene.doing.get(person, ""),
         )
+
+
+def _with_plan(person: PersonNow, world: PlannedGame | None) -> PersonNow:
+    """Add why a person who asks is first, or has to wait for some calls."""
+    if world is None or not person.turn:
+        return person
+    calls = world.tracker.calls_first if person.turn == 1 else 0
+    return replace(person, claims=person.id in world.vouched, calls_first=calls)
 
 
 def _with_facts(person: PersonNow, world: object) -> PersonNow:

@@ -51,7 +51,7 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
         case "visit over":
             return f"{person} has had a visit."
         case "calls first":
-            return f"Tangy has visited several people. {calls_first_words(event.number)}"
+            return calls_first_words(event.number)
         case "all called":
             return "All numbers have been called. Tangy goes to each person and looks at the card."
         case "nobody won":
@@ -72,8 +72,11 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
 
 
 def calls_first_words(calls: int) -> str:
-    """Tell how many calls come before the visits to people who asked."""
-    return f"Tangy first calls {counted(calls, 'number')}, then goes to them."
+    """Tell how many calls come before the visits to people who asked, and why."""
+    return (
+        "Tangy has visited several people, and everybody waits for a number. It first calls "
+        f"{counted(calls, 'number')}, then goes to those who ask."
+    )
 
 
 def pattern_words(activity: Activity | None, names: tuple[str, ...]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from datetime import datetime, timedelta
 from typing import TypeAlias, assert_never
 
@@ -28,6 +28,10 @@ PAUSED = "Paused."
 TIME_FIRST = ", once everybody has had time"
 """Why Tangy does not call the next number yet."""
 TANGY_WAITS = f"Tangy {WAITS_FOR_YOU}."
+CLAIM_FIRST = "first because of the claim"
+"""Why Tangy goes to a person before those who have waited longer."""
+FIRST_BY_CLAIM = "first: a claim"
+"""The same, shorter."""
 OVER = "The game is over."
 
 
@@ -113,11 +117,21 @@ def next_words(
     name: Callable[[str], str],
     calls_first: int = 0,
     *,
+    then: str = "",
+    claims: Collection[str] = (),
     waits: bool = False,
 ) -> str:
     """Tell Tangy's next step, and why.
 
-    `calls_first` calls come before people who asked; Tangy `waits` for the time of the next call.
+    Args:
+        activity: the activity played.
+        decision: the next decision.
+        state: the state in which it is made.
+        name: returns a person's name for an id.
+        calls_first: the calls that come before people who asked.
+        then: the name of the person to whom Tangy goes after these calls.
+        claims: the people whose cards win by a claim.
+        waits: whether Tangy waits for the time of the next call.
     """
     behaviour = activity.behaviours.get(decision.behaviour)
     why = "" if calls_first else activity.in_words(state.situation)
@@ -129,11 +143,13 @@ def next_words(
     if behaviour is not None and decision.sure:
         done = behaviour.question
         whom = name(state.attended) if behaviour.attends and state.attended else ""
+    if whom and state.attended in claims:
+        why, clause = CLAIM_FIRST, False
     notes = "; ".join(filter(None, (whom, "" if clause else why)))
     because = f", because {why}" if clause else ""
     if waits and not calls_first:
         because = TIME_FIRST
-    calls = f" {calls_first_words(calls_first)}" if calls_first else ""
+    calls = f" {calls_first_words(calls_first, then)}" if calls_first else ""
     return f"Next: {done}{f' ({notes})' if notes else ''}{because}.{calls}"
 
 
@@ -142,9 +158,14 @@ def plays_on_words(pattern: str) -> str:
     return f"Somebody has won. Next: the game goes on for {pattern}."
 
 
-def calls_first_words(calls: int) -> str:
-    """Tell how many numbers Tangy calls before it goes to people who asked."""
-    return f"Tangy calls {counted(calls, 'number')} before it goes to those who ask."
+def calls_first_words(calls: int, then: str) -> str:
+    """Tell how many numbers Tangy calls before it goes to the first who asked, and why."""
+    return f"{counted(calls, 'number')} first, then {then}, as everybody waits for one."
+
+
+def looks_words(name: str, what: str) -> str:
+    """Tell that Tangy reads a person's card, or what they handle; the next step depends on it."""
+    return f"Tangy looks at the {what} ({name})."
 
 
 def welcomes_words(name: str) -> str:
@@ -173,7 +194,14 @@ def person_words(person: PersonNow) -> str:
         case "asks":
             known = person.waits is not None and person.waits >= STEP_SECONDS
             waits = f" {lasting_words(person.waits or 0.0)}" if known else ""
-            return f"asks{waits}" + (f", {seen}" if seen else "")
+            calls = counted(person.calls_first, "number")
+            asked = (
+                FIRST_BY_CLAIM if person.claims else "",
+                f"asks{waits}",
+                f"after {calls}" if person.calls_first else "",
+                seen,
+            )
+            return ", ".join(filter(None, asked))
         case "plays":
             told = seen or ("no visit yet" if person.goes_round else "")
             turn = "has the turn" if person.their_turn else ""

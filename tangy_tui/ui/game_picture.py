@@ -11,6 +11,7 @@ from textual.screen import Screen
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.declared.speech import with_names
 from tangy_profiles.game_records import CallMade, CallStage
+from tangy_profiles.planned_game import as_planned
 from tangy_profiles.present_moment import as_present
 from tangy_profiles.scene import Scene
 from tangy_tui.app.staff_view import next_step
@@ -97,6 +98,9 @@ class GamePicture:
         now = as_present(self._supervision.world)
         if now is not None and (said := now.saying or now.said_before):
             return with_names(said, self._workspace.name)
+        planned = as_planned(self._supervision.world)
+        if planned is not None and planned.said:  # also while it speaks, and besides its steps
+            return planned.said
         return self.grounds[-1].acted.speech if self.grounds else ""
 
     def begin(self) -> None:
@@ -186,6 +190,10 @@ class GamePicture:
         now = as_present(self._supervision.world)
         if now is not None and self._game:
             self._stage = self._workspace.activity.in_words(joint_state(now.ahead).situation)
+        elif self.counts is not None and self._game:  # live: it may change during a step
+            ahead = next_step(self._supervision.world, self._supervision.policy)
+            if ahead is not None:
+                self._stage = self._workspace.activity.in_words(ahead[1].situation)
         return self._stage
 
     def why(self, chosen: int | None, coming: str = "") -> WhyDialog | None:

@@ -94,3 +94,15 @@ async def test_a_long_next_step_takes_two_lines_and_shows_where_it_is_cut(run: R
         await pilot.pause()
         first, second, third = pilot.lines()[:3]
         assert words[0] in first and second.endswith("…") and "word" not in third
+
+
+async def test_the_title_tells_what_tangy_said_as_far_as_there_is_room(run: Run) -> None:
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.show("B7", "Next: call number.", [], [], said="Tangy said: The number is [B-7].")
+        assert str(panel.border_title) == "Now │ Tangy said: The number is [B-7]."
+        panel.show("B7", "Next: call number.", [], [], said="Tangy said: " + "long " * 40)
+        title = str(panel.border_title)
+        assert title.endswith("…") and 70 < len(title) <= 78
+        panel.show("B7", "Next: call number.", [], [])
+        assert str(panel.border_title) == "Now"

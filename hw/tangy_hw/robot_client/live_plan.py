@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from math import hypot
 from typing import TypeAlias
 
@@ -101,6 +101,7 @@ class LivePlan(PlannedGame):
         Raises:
             DeviceError: neither speech nor screen worked.
         """
+        self.said = speech or self.said
         in_words = picture._replace(text=written or speech)
         if speech and not self._has_voice:
             self.commands.perform(speech, in_words, posture, sound)
@@ -108,6 +109,15 @@ class LivePlan(PlannedGame):
         done = self.commands.perform(speech, picture, posture, sound)
         if speech and not done.get("said"):  # it has just failed, or the robot has no voice
             self.commands.perform("", in_words)
+
+    @contextmanager
+    def looking_at(self, person: str) -> Iterator[None]:
+        """Mark that a person's card is being read: what comes next depends on it."""
+        self.looking = person if person in self.tracker.queue else ""
+        try:
+            yield
+        finally:
+            self.looking = ""
 
     @property
     def _has_voice(self) -> bool:

@@ -166,7 +166,8 @@ class LiveWorld(LivePlan):
         with suppress(DeviceError):
             place = self.tracker.place
             if place in self.tracker.queue and not self.over and self.eyes is None:
-                self.read_card(place, after=LOOK_SECONDS)
+                with self.looking_at(place):
+                    self.read_card(place, after=LOOK_SECONDS)
             self.commands.settle()
             self.link.beat()
         return self.observe()
@@ -277,14 +278,15 @@ class LiveWorld(LivePlan):
         """Drive to a place; beside a person, identify them and look at the card."""
         if not self.drive(place):
             return False
-        self.tracker.arrive(place)
-        self.cards.leave()
-        if self.eyes is not None:
-            self.eyes.leave()
-        if place != FRONT and self.knows_faces:
-            self._see_who(place)
-        if place in self.tracker.queue:
-            self.read_card(place)
+        with self.looking_at(place):
+            self.tracker.arrive(place)
+            self.cards.leave()
+            if self.eyes is not None:
+                self.eyes.leave()
+            if place != FRONT and self.knows_faces:
+                self._see_who(place)
+            if place in self.tracker.queue:
+                self.read_card(place)
         return True
 
     def _see_who(self, place: str) -> None:

@@ -167,8 +167,7 @@ class LiveScreen(LiveStaff):
         state = self.world.link.state
         if not state.number:
             return
-        if (doing := self._doing()) != self._seen_doing:
-            self._seen_doing = doing
+        if (self._doing() or self._until_call()) != self._seen_doing:
             self.show_status()
         if state.frozen and not self._frozen:
             self._write(frozen_words(state.frozen), "bad")
@@ -210,6 +209,7 @@ class LiveScreen(LiveStaff):
 
     def show_status(self) -> None:
         """Show the state of the game, and the keys that have an effect now."""
+        self._seen_doing = self._doing() or self._until_call()
         super().show_status()
         going = self.control.going
         self.query_one(KeyLine).show(
@@ -240,6 +240,5 @@ class LiveScreen(LiveStaff):
         return short_going_words(state.going, self._workspace.name, state.yields_to)
 
     def _until_call(self) -> str:
-        counts = self.control.phase == "running" and not self.working
-        left = self.world.calls_in if counts else 0.0
+        left = self.world.calls_in if self.control.counts_down else 0.0
         return f"next call in {ceil(left)} s" if left else ""

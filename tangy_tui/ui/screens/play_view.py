@@ -50,6 +50,7 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
         _facts(view, shown, last=not columns),
         person_lines(view.people, shown.name),
         [column_row(column, view.called, BOARD) for column in columns],
+        text.said_words(shown.said) if shown.said and as_planned(shown.world) else "",
     )
 
 
@@ -73,9 +74,18 @@ def next_line(shown: ViewSource) -> str:
     words = ""
     if planned is not None and planned.tracker.finished and planned.patterns.left:
         words = text.plays_on_words(planned.patterns.left[0].label)
+    elif planned is not None and planned.looking:
+        words = text.looks_words(shown.name(planned.looking), world.activity.object)
     elif found is not None:
-        waits = control.robot.rests(found[0])
-        words = text.next_words(world.activity, *found, shown.name, calls_first, waits=waits)
+        words = text.next_words(
+            world.activity,
+            *found,
+            shown.name,
+            calls_first,
+            then="".join(map(shown.name, planned.tracker.queue[:1])) if planned else "",
+            claims=planned.vouched if planned else (),
+            waits=control.robot.rests(found[0]),
+        )
     elif shown.said:  # if the next step is unknown, staff need to know the last question
         words = text.said_words(shown.said)
     return words if control.going else f"{text.PAUSED} {words}".strip()

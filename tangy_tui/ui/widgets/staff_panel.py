@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from rich.cells import cell_len
 from textual import events
+from textual.content import Content
 
 from tangy_tui.text.staff_view import Fact, more_words
 from tangy_tui.ui.clean_output import clean
@@ -56,6 +57,7 @@ BOARD = 48
 BOARD_HEIGHT = 9
 """From this height in lines on, the board is shown here, with the facts below the call."""
 
+TITLE = "Now"
 HARD = "\N{NO-BREAK SPACE}"
 
 NEXT_HEIGHT = 9
@@ -72,15 +74,16 @@ class StaffPanel(RowView, can_focus=True):
     StaffPanel { scrollbar-gutter: auto; scrollbar-size-vertical: 0; }
     """
     HELP = (
-        "The last call, the pattern to play for, the time, the pace, what Tangy does next and why, "
-        "and each person: how long they have waited, and when Tangy last visited them. If there "
-        "are more people than lines, up and down scroll; Home, Esc or the next step leads back."
+        "What Tangy said last, what it does next and why, the last call, the pattern to play for, "
+        "the time, the pace, and each person: how long they have waited, and when Tangy last "
+        "visited them. If there are more people than lines, up and down scroll; Home, Esc or the "
+        "next step leads back."
     )
 
     def __init__(self) -> None:
         super().__init__(id="staff")
-        self.border_title = "Now"
-        self._call, self._next = "", ""
+        self.border_title = TITLE
+        self._call, self._next, self._said = "", "", ""
         self._facts: tuple[Fact, ...] = ()
         self._people: tuple[PersonLine, ...] = ()
         self._board: tuple[Row, ...] = ()
@@ -93,8 +96,15 @@ class StaffPanel(RowView, can_focus=True):
         facts: Sequence[Fact],
         people: Sequence[PersonLine],
         board: Sequence[Row] = (),
+        said: str = "",
     ) -> None:
-        """Show the last call, the next step, facts beside the call, people, and the board."""
+        """Show the last call, the next step, facts beside the call, people, and the board.
+
+        The title tells what Tangy `said`, as far as there is room.
+        """
+        if said != self._said:
+            self._said = said
+            self._draw_title()
         new = call, next_step, tuple(facts), tuple(people), tuple(board)
         if new != (self._call, self._next, self._facts, self._people, self._board):
             if new[:2] != (self._call, self._next):
@@ -104,6 +114,7 @@ class StaffPanel(RowView, can_focus=True):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay out again."""
+        self._draw_title()
         self._draw()
 
     def return_to_top(self) -> bool:
@@ -124,6 +135,10 @@ class StaffPanel(RowView, can_focus=True):
         count = (below - 1) * self._across + last if below > 0 else 0
         count = min(count, len(self._people))  # facts may be below as well
         self.border_subtitle = more_words(count) if count else ""
+
+    def _draw_title(self) -> None:
+        said = shorten(clean(self._said), max(0, self._rows.width - len(TITLE) - 5))
+        self.border_title = Content(f"{TITLE} │ {said}" if said else TITLE)
 
     def _draw(self) -> None:
         width, height = self._rows.width, self._rows.height

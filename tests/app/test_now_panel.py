@@ -1,0 +1,113 @@
+"""The panel *Now*: the next step is only what is decided, and says why somebody comes first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.game_rules import GamePlan
+from tangy_tui.app.game_commands import AskFor, ClaimCard, Pause
+from tangy_tui.app.staff_view import PersonNow
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.staff_view import person_words
+from tangy_tui.ui.screens.play_view import ViewSource, next_line
+from tests.app.test_interruption import Robot
+from tests.app.test_planned_games import Planned
+
+
+@pytest.fixture
+def robot(taught: Path) -> Iterator[Robot]:
+    workspace = Workspace(taught)
+    yield Robot(workspace)
+    workspace.close()
+
+
+def next_of(robot: Robot) -> str:
+    return next_line(ViewSource(robot.world, robot.control, 0, robot.workspace.name))
+
+
+def test_until_the_card_is_read_the_next_step_is_to_look_at_it(robot: Robot) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user2"))
+    shown = list[tuple[str, str]]()
+    robot.link.meanwhile = lambda do, time: shown.append((do, next_of(robot)))
+    robot.next(1)
+    name = robot.workspace.name("user2")
+    looks = f"Tangy looks at the card ({name})."
+    assert [words == looks for do, words in shown if do == "card"] == [True]
+    assert next_of(robot).startswith("Next: ask to move the card closer")
+    (arrives,) = (words for do, words in shown if do == "go")
+    assert arrives.startswith("Next: go to the user")
+
+
+def test_the_last_words_of_tangy_are_known_while_it_speaks(robot: Robot) -> None:
+    said = list[str]()
+    robot.link.meanwhile = lambda do, time: said.append(robot.world.said)
+    robot.next(1)
+    assert said[0] == robot.link.said[0] == robot.world.said
+    robot.world.announce("Well done!")
+    assert robot.world.said == "Well done!"
+    robot.world.begin()
+    assert robot.world.said == ""
+
+
+def test_who_waits_for_some_numbers_is_told_so(taught: Path) -> None:
+    planned = Planned(taught, users=24)
+    planned.begin(GamePlan(("full card",), visits=True, pace=5))
+    world, name = planned.world, planned.workspace.name
+    while world.tracker.calls_first < 2:
+        planned.play(calls=len(world.called_now) + 1)
+        assert not planned.supervision.over
+    calls, first = world.tracker.calls_first, world.tracker.queue[0]
+    words = next_line(ViewSource(world, planned.control, 0, name))
+    then = f"{calls} numbers first, then {name(first)}, as everybody waits for one."
+    assert words == f"Next: call number. {then}"
+    people = {one.id: one for one in planned.control.view().people}
+    assert f", after {calls} numbers" in person_words(people[first])
+    assert not any(one.calls_first for one in people.values() if one.id != first)
+    planned.workspace.close()
+
+
+def test_who_comes_first_by_a_claim_is_told_so(robot: Robot) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user1"))
+    robot.world.observe()
+    world = robot.world
+    numbers = world.numbers_on(17)
+    assert numbers is not None
+    world.called.extend(numbers)
+    told = robot.control.apply(ClaimCard(17, "user3"))
+    assert told and "user3" in world.vouched
+    view = {one.id: one for one in robot.control.view().people}
+    assert (view["user3"].turn, view["user3"].claims) == (1, True)
+    assert person_words(view["user3"]).startswith("first: a claim, asks")
+    assert not view["user1"].claims
+    name = robot.workspace.name("user3")
+    assert next_of(robot) == f"Next: go to the user ({name}; first because of the claim)."
+
+
+def test_the_reason_stands_before_the_visit() -> None:
+    waits = PersonNow("ann", "asks", 1, waits=14.0, unvisited=24.0)
+    assert (
+        person_words(replace(waits, calls_first=3)) == "asks 10 s, after 3 numbers, visit 20 s ago"
+    )
+    assert person_words(replace(waits, claims=True)) == "first: a claim, asks 10 s, visit 20 s ago"
+
+
+def test_the_countdown_stands_still_only_while_a_step_is_carried_out(robot: Robot) -> None:
+    shown = list[tuple[str, bool]]()
+    robot.link.meanwhile = lambda do, time: shown.append((do, robot.control.counts_down))
+    robot.world.set_pace(30.0)
+    robot.next(2)
+    assert robot.world.calls_in > 0 and robot.control.counts_down
+    assert [counts for _, counts in shown] == [False] * len(shown)
+    robot.next(1)  # it is too early
+    assert robot.control.counts_down
+    robot.control.apply(AskFor("user1"))
+    robot.world.observe()
+    assert not robot.control.counts_down  # Tangy goes to somebody first
+    robot.control.apply(Pause())
+    assert not robot.control.counts_down
