@@ -44,7 +44,7 @@ from tangy_tui.monitoring.session import read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import session_lines
-from tests.hw.links import FakeLink
+from tests.hw.links import FakeLink, LaidCard
 
 SEED = 31
 
@@ -111,6 +111,25 @@ def test_staff_say_who_joins(typed: str, joins: Joins) -> None:
 
 def test_a_fact_called_joins_is_no_new_person() -> None:
     assert not isinstance(read_command("user2: joins", str), Joins)
+
+
+@pytest.mark.parametrize("marked", [1, 0])
+def test_tangy_looks_at_the_card_again_to_which_it_returns(taught: Path, marked: int) -> None:
+    workspace = Workspace(taught)
+    before = LiveGame(workspace)
+    before.link.cards["user3"] = LaidCard(7, marked=1)
+    before.play(6)
+    before.control.apply(AskFor("user3"))
+    while before.world.tracker.place != "user3":
+        before.play(1)
+    assert before.world.tracker.seen == "incorrectly marked"
+    before.told(Joins("Berta"))
+    after = LiveGame(workspace, resume_joined(workspace, LIVE), goes_on=True)
+    after.link.cards["user3"] = LaidCard(7, marked=marked)
+    (acted,) = (one for one in after.control.next() if isinstance(one, Acted))
+    assert acted.outcome.completed == bool(marked)
+    assert not after.control.supervision.faults
+    workspace.close()
 
 
 def test_a_new_person_joins_a_running_game_and_is_in_its_log(taught: Path) -> None:

@@ -131,6 +131,7 @@ class LiveWorld(LivePlan):
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
         self._recall(past.cards)
+        self._remedies.looks_first = self.tracker.place in self.tracker.queue
         self.over = False
         self.commands.settle()
         self.commands.await_tablets()
@@ -185,8 +186,8 @@ class LiveWorld(LivePlan):
         try:
             if self.tracker.allows(behaviour):
                 if behaviour.effect not in DRIVES and not self.lost:
-                    self._remedies.go_back(knows_place=True)  # staff may have driven it
-                found = self._numbers_of(action)
+                    self._remedies.take_place()  # staff may have driven it
+                found = self._numbers_of(action) if self.tracker.allows(behaviour) else None
                 if found is not None:
                     numbers = found
                     response, succeeded = self._carry_out(action, numbers)
@@ -280,6 +281,7 @@ class LiveWorld(LivePlan):
             return False
         with self.looking_at(place):
             self.tracker.arrive(place)
+            self._remedies.looks_first = False
             self.cards.leave()
             if self.eyes is not None:
                 self.eyes.leave()

@@ -25,6 +25,8 @@ class RecoveryActions:
 
     def __init__(self, world: LiveWorld) -> None:
         self._world = world
+        self.looks_first = False
+        """Whether the game was resumed beside a card that this robot has not seen."""
 
     def do(self, remedy: Remedy) -> float:
         """Carry out a remedy; return its duration in s of the robot's time."""
@@ -93,6 +95,19 @@ class RecoveryActions:
         at, pose = world.stand(place), world.link.state.pose
         if hypot(pose.x - at.x, pose.y - at.y) > AWAY and not world.drive(place):
             raise DeviceError("The robot does not get back to where it was.")
+
+    def take_place(self) -> None:
+        """Return to the robot's place in the game; see the card there if it has not yet.
+
+        The log tells the state of a card, but not the numbers that a request names.
+
+        Raises:
+            DeviceError: it has to stop, or finds no way.
+        """
+        self.go_back(knows_place=True)
+        if self.looks_first:
+            self._world.read_card(self._world.tracker.place)
+            self.looks_first = False
 
     def _look_again(self, remedy: Remedy) -> None:
         """Check whether the reason for a halt is gone, when staff say so."""
