@@ -141,6 +141,33 @@ class TestTracks:
             if person.x > 4.5:
                 assert nearest(watching.tracker.tracks, person)[0] < 0.6
 
+    @pytest.mark.parametrize("apart", [0.25, 0.35])
+    @pytest.mark.parametrize("seed", [1, 2, 3, 4])
+    def test_two_walkers_who_pass_each_other_stay_the_same_people(
+        self, apart: float, seed: int
+    ) -> None:
+        right, left = walks(0.0, 1.2), walks(pi, 1.0)
+        right.x, right.y = 3.2, 2.4
+        left.x, left.y = 6.5, 2.4 + apart  # the other one hides them as they meet
+        watching = Watching(drive([right, left], seed))
+        watching.watch(0.8)
+        for _ in range(16):
+            watching.watch(TICK)
+            for person, speed in ((right, 1.2), (left, -1.0)):
+                off, track = nearest(watching.tracker.tracks, person)
+                assert off < 0.25 and abs(track.vx - speed) < 0.4 and track.age > 0.7
+        tracks = [nearest(watching.tracker.tracks, one)[1] for one in (right, left)]
+        assert all(track.age > 2.3 for track in tracks) and len(watching.tracker.tracks) == 2
+
+    def test_a_walker_who_leaves_the_view_is_forgotten_after_a_moment(self) -> None:
+        person = walks(-pi / 2, 1.0)
+        person.x, person.y = 5.8, 2.6  # past the robot, and out of sight behind it
+        watching = Watching(drive([person], pose=Pose(5.0, 2.6, pi / 2)))
+        seen = watching.watch(1.6)
+        assert any(track.hidden for track in seen[-1])
+        watching.watch(1.2)
+        assert watching.tracker.tracks == ()
+
     def test_legs_far_apart_in_a_stride_stay_one_person(self) -> None:
         person = walks(0.0, 1.3)
         person.x, person.y = 3.5, 2.7

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import cos, hypot, sin
 from typing import NamedTuple
@@ -19,6 +20,7 @@ SKIPPED = 3  # beams without a return that a cluster may contain
 LEG = (0.03, 0.30)  # width in metres
 BEHIND = 0.06  # metres from the visible side of a leg to its centre
 APART = (0.10, 0.45)  # metres between the legs of a person
+EXPECTED = 0.15  # metres from where a person is expected to the centre of their legs
 CHAIR, SOLID = 0.25, 0.06  # legs further apart than CHAIR must be SOLID wide, in m
 WIDEST = 0.9  # metres of width above which a cluster is furniture
 TORSO = 0.22  # metres from the centre of a person to the edge of the torso
@@ -46,7 +48,10 @@ class Cluster(NamedTuple):
 
 
 def sightings(
-    scan: Scan, laser: Pose = IDENTITY, unmapped: NDArray[np.bool_] | None = None
+    scan: Scan,
+    laser: Pose = IDENTITY,
+    unmapped: NDArray[np.bool_] | None = None,
+    expected: Sequence[tuple[float, float]] = (),
 ) -> list[LegSighting]:
     """Return the people and objects in a scan that are not on the map.
 
@@ -54,10 +59,12 @@ def sightings(
         scan: the scan.
         laser: pose of the scanner on the robot.
         unmapped: (n,) for each beam, whether it ends away from everything on the map; None: all do.
+        expected: where people are expected, in m in the robot's frame. If there are several, legs
+            that fit one of them are paired first: people who pass each other keep their own legs.
     """
     found = clusters(scan, laser, unmapped)
     legs = [one for one in found if LEG[0] <= one.width <= LEG[1]]
-    pairs = _pairs(legs)
+    pairs = _pairs(legs, expected)
     paired = {number for pair in pairs for number in pair}
     people = [
         LegSighting((legs[a].x + legs[b].x) / 2, (legs[a].y + legs[b].y) / 2, TORSO, True)
@@ -107,8 +114,8 @@ def _cluster(points: Floats, far: float, step: float, laser: Pose) -> Cluster:
     return Cluster(middle.x, middle.y, width)
 
 
-def _pairs(legs: list[Cluster]) -> list[tuple[int, int]]:
-    """Return the pairs of legs by their numbers, the closest pairs first."""
+def _pairs(legs: list[Cluster], expected: Sequence[tuple[float, float]]) -> list[tuple[int, int]]:
+    """Return the pairs of legs by their numbers: expected people first, then the closest pairs."""
     near = []
     for a, one in enumerate(legs):
         for b in range(a + 1, len(legs)):
@@ -116,10 +123,32 @@ def _pairs(legs: list[Cluster]) -> list[tuple[int, int]]:
             solid = min(one.width, legs[b].width) >= SOLID
             if APART[0] <= apart <= (APART[1] if solid else CHAIR):
                 near.append((apart, a, b))
-    taken: set[int] = set()
-    found = []
+    found = _expected_pairs(legs, [(a, b) for _, a, b in near], expected)
+    taken = {number for pair in found for number in pair}
     for _, a, b in sorted(near):
         if a not in taken and b not in taken:
+            taken |= {a, b}
+            found.append((a, b))
+    return found
+
+
+def _expected_pairs(
+    legs: list[Cluster], pairs: list[tuple[int, int]], expected: Sequence[tuple[float, float]]
+) -> list[tuple[int, int]]:
+    """Return the pairs that fit expected people best, one for each; none for a single person."""
+    if len(expected) < 2:
+        return []
+    fits = sorted(
+        (hypot((legs[a].x + legs[b].x) / 2 - x, (legs[a].y + legs[b].y) / 2 - y), a, b, person)
+        for a, b in pairs
+        for person, (x, y) in enumerate(expected)
+    )
+    found: list[tuple[int, int]] = []
+    taken: set[int] = set()
+    met: set[int] = set()
+    for off, a, b, person in fits:
+        if off < EXPECTED and person not in met and a not in taken and b not in taken:
+            met.add(person)
             taken |= {a, b}
             found.append((a, b))
     return found

@@ -174,8 +174,8 @@ class PeopleTracker:
         """
         for one in self._followed:
             one.predict(dt)
-        found = [_placed(one, odometry) for one in sightings(scan, self._laser, unmapped)]
-        found = self._joined(found)
+        seen = sightings(scan, self._laser, unmapped, self._expected(odometry))
+        found = self._joined([_placed(one, odometry) for one in seen])
         matched = self._matched(found)
         for number, one in enumerate(self._followed):
             sighting = matched.get(number)
@@ -200,6 +200,15 @@ class PeopleTracker:
     def tracks(self) -> tuple[Track, ...]:
         """Confirmed tracks, in the odometry frame."""
         return tuple(one.track for one in self._followed if one.hits >= SURE)
+
+    def _expected(self, odometry: Pose) -> list[tuple[float, float]]:
+        """Return the predicted positions of confirmed tracks, in the robot's frame."""
+        there = [
+            relative_pose(odometry, Pose(float(one.state[0, 0]), float(one.state[0, 1]), 0.0))
+            for one in self._followed
+            if one.hits >= SURE
+        ]
+        return [(one.x, one.y) for one in there]
 
     def _joined(self, found: list[LegSighting]) -> list[LegSighting]:
         """Join two legs that are far apart if a track predicts a person between them."""
