@@ -16,7 +16,7 @@ AUTONOMY: tuple[Autonomy, ...] = get_args(Autonomy)
 Direction = Literal["forward", "back", "left", "right", "still"]
 DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 
-Phase = Literal["idle", "running", "paused", "stopped", "asking", "halted", "staff"]
+Phase = Literal["idle", "running", "paused", "stopped", "asking", "halted", "staff", "joining"]
 """The phase of a game; idle without a game. `staff`: they drive by hand or choose the next step.
 """
 

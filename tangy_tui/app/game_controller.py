@@ -121,7 +121,7 @@ class GameController(PausingGames):
     def phase(self) -> Phase:
         """The phase of the game."""
         if self.supervision.over:
-            return "idle"
+            return "joining" if self.joined else "idle"
         if self.stopped:
             return "stopped"
         if self.supervision.halted is not None:
@@ -133,6 +133,11 @@ class GameController(PausingGames):
         if not self.going:
             return "paused"
         return "asking" if self._unanswered else "running"
+
+    @property
+    def waits(self) -> bool:
+        """Whether the game waits for staff."""
+        return self.phase not in ("idle", "running", "joining")
 
     @property
     def proposal(self) -> Proposal | None:

@@ -29,7 +29,7 @@ class JoiningGames(EndingGames):
     admission: Admission | None = None
     """Adds people to the participants; None: nobody can join."""
     welcomes = ""
-    """The name of the person for whom the robot drives to the front now."""
+    """The name of the person for whom the robot drives to the front, and is set up there."""
     joined = False
     """Whether the game was interrupted because a person joined, and is to be resumed with them."""
     goes_on = False
@@ -63,13 +63,14 @@ class JoiningGames(EndingGames):
 
     def _goes_to_front(self, name: str) -> bool:
         """Drive to the front for a new person; return whether the robot got there unstopped."""
-        self.welcomes = name
+        self.welcomes, arrived = name, False
         try:
             with suppress(DeviceError):
-                return self.robot.go_to_front()
-            return False
+                arrived = self.robot.go_to_front()
         finally:
-            self.welcomes = ""
+            if not arrived:
+                self.welcomes = ""
+        return arrived
 
     def admit_no_more(self) -> None:
         """Admit nobody else: the robot is being set up for those who have joined."""

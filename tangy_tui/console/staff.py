@@ -214,7 +214,7 @@ class StaffLines:
             self._telling.tell(events)
             self._questions.prompt(self._typed)
             busy = self._tasks.unfinished_tasks
-            if self._ahead.ended and not busy and controller.phase not in ("running", "idle"):
+            if self._ahead.ended and not busy and controller.waits:
                 self._telling.write(staff_lines.NOBODY)
                 self._telling.tell(controller.give_up() or controller.apply(EndGame()))
             passed = 0.0 if self._speed is None else (game.seconds - before) / self._speed
@@ -249,7 +249,7 @@ class StaffLines:
                 if early:  # handle them first
                     self._ahead.lines.put(None)
                     time.sleep(LOOK_SECONDS)
-                elif self._controller.phase in ("idle", "running"):
+                elif not self._controller.waits:
                     self._telling.write(staff_lines.NO_MORE)
                 self._controller.nudge.set()
             elif (

@@ -46,6 +46,20 @@ def no_seat_words(room: str, seats: str) -> str:
     )
 
 
+GOES_ON = "the game goes on"
+"""The header while Tangy sets itself up for a new person."""
+
+
+def setting_up_words(name: str) -> str:
+    """Tell in the header that Tangy sets itself up for a new person."""
+    return f"sets itself up for {name}"
+
+
+def sets_up_words(name: str) -> str:
+    """Tell that Tangy sets itself up for a new person, and what follows."""
+    return f"Tangy sets itself up for {name}. Then the game goes on."
+
+
 WHERE = "Where does {} sit?"
 
 

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.games import Game
 
 STARTING = "Its devices are being started. It stands still until the game begins."
-STARTING_AGAIN = "Its devices are being started again. It stands still until the game goes on."
 LEAVES_OFF, KEEPS_GAME = "leave it off", "leave it off, and keep the game for later"
 GAME_KEPT = "The game is kept: begin a live game to go on with it."
 TRY_AGAIN = "Switch Tangy on again, and go on with the game?"
@@ -36,6 +35,14 @@ CALLED_OFF = "It is being switched off again."
 
 LOOKS_ROUND = "Tangy does not know where it is: it turns on the spot, then drives to the front."
 MAY_MOVE = "Tangy may move again."
+
+
+def starting_again_words(name: str) -> str:
+    """Tell that the robot is switched on again for a new person."""
+    return (
+        f"Tangy sets itself up for {name}: its devices are being started again. It stands still "
+        "until the game goes on."
+    )
 
 
 def part_words(part: str, robot: Robot) -> str:

@@ -36,6 +36,7 @@ PHASES: dict[Phase, str] = {
     "asking": "Tangy asks staff",
     "halted": "HALTED",
     "staff": "staff lead Tangy",
+    "joining": "somebody new joins, and the game goes on",
 }
 
 LAST_CALLS = 5
@@ -86,7 +87,7 @@ def world_and_driver(view: GameView) -> str:
 def robot_words(view: GameView) -> str:
     """Tell the state of the robot as the console that runs the game does: a STOP comes first."""
     halted = view.robot == "HALTED"
-    if view.phase == "idle":  # what a device does after the game concerns nobody
+    if view.phase in ("idle", "joining"):  # what a device does after the game concerns nobody
         return f"WARN: {view.cause}, not cleared" if halted else "OK"
     words = status_words((view.robot, view.cause))
     if view.phase == "stopped":
@@ -98,7 +99,7 @@ def stage_words(view: GameView) -> str:
     """Tell why Tangy does nothing now; "" while it plays, or if the robot's state tells it."""
     if view.phase == "idle":
         return OVER_NOW
-    return PHASES[view.phase] if view.phase in ("paused", "asking", "staff") else ""
+    return PHASES[view.phase] if view.phase in ("paused", "asking", "staff", "joining") else ""
 
 
 def phase_line(view: GameView) -> str:

@@ -81,6 +81,8 @@ class GamePicture:
         """Whether the time to the next call is counted down; None: the screen is not for staff."""
         self.scene: Callable[[], Scene] = supervision.world.scene
         """Returns the scene to show."""
+        self.over: Callable[[], str] = lambda: OVER_NOW
+        """Returns the stage while no game runs."""
         self._stage = ""
         self._step: int | None = None
         self._game: int | None = None
@@ -186,7 +188,7 @@ class GamePicture:
 
     def _stage_now(self) -> str:
         if self._game and self._supervision.over:
-            return OVER_NOW
+            return self.over()
         now = as_present(self._supervision.world)
         if now is not None and self._game:
             self._stage = self._workspace.activity.in_words(joint_state(now.ahead).situation)

@@ -150,6 +150,7 @@ async def _play(
         )
         screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
         screen.control.admission = Admission(workspace, world)
+        screen.closes = robot.close
         if before is not None:
             workspace.door.attach(screen.control)
             screen.control.follow(before.control)
@@ -221,7 +222,7 @@ async def _switch_on(
         profile.title,
         robot.cancel,
         lambda: parts_lines(robot.parts, robot.done, profile),
-        again=before is not None,
+        joins="" if before is None else before.control.welcomes,
     )
     robot.failure = ""
     program.push_screen(dialog)

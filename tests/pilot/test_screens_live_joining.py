@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 
@@ -13,8 +14,10 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameEnding
 from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import SetAutonomy, StopRobot
+from tangy_tui.app.game_view import view_of
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.watching import stage_words
 from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program
@@ -32,6 +35,8 @@ class Robot:
         self.off = 0
         self.links: list[HeldLink] = []
         self.workspace = workspace
+        self.closing: threading.Event | None = None
+        """Set when it may be switched off; None: at once."""
         self.broken = False
         """Whether it does not come on."""
         self.meanwhile: Callable[[], object] = lambda: None
@@ -50,6 +55,8 @@ class Robot:
         try:
             yield live_world(self.workspace, link)
         finally:
+            if self.closing is not None:
+                self.closing.wait()
             self.off += 1
 
 
@@ -93,6 +100,33 @@ async def test_a_new_person_joins_a_game_on_the_screen(
         assert tuple(live(pilot).world.called)[: len(called)] == called
         assert not live(pilot).control.going  # as before
         assert live(pilot).control.autonomy.level == "each" and live(pilot).games == 2
+
+
+@pytest.mark.slow
+async def test_the_screen_says_for_whom_tangy_is_set_up_anew(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    robot = Robot(workspace)
+    robot.closing = threading.Event()
+    try:
+        async with paused_game(run, robot, policy) as pilot:
+            first = live(pilot)
+            await pilot.press(":", *"add Berta", "enter")
+            await until_shown(pilot, lambda: "sets itself up for Berta │ game 1" in pilot.text())
+            now = "Tangy sets itself up for Berta. Then the game goes on."
+            await until_shown(pilot, lambda: now in pilot.text())
+            text = pilot.text()
+            assert "the game goes on" in pilot.lines()[0]
+            assert "play again" not in text and "is over" not in text
+            view = view_of(first.control)
+            assert view is not None and "somebody new joins" in stage_words(view)
+            await pilot.press("g", "escape")
+            assert pilot.app.screen is first  # both wait
+            robot.closing.set()
+            await until_shown(pilot, lambda: "Berta has joined." in pilot.text())
+            assert live(pilot) is not first
+    finally:
+        robot.closing.set()
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.text.live_games import STARTING, STARTING_AGAIN
+from tangy_tui.text.live_games import STARTING, starting_again_words
 from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program
@@ -83,11 +83,13 @@ async def test_the_dialog_shows_the_progress_and_how_to_cancel(
         looks(pilot.app)
 
 
-@pytest.mark.parametrize(("again", "until_when"), [(False, STARTING), (True, STARTING_AGAIN)])
+@pytest.mark.parametrize(
+    ("joins", "until_when"), [("", STARTING), ("Berta", starting_again_words("Berta"))]
+)
 async def test_the_dialog_tells_until_when_the_robot_stands_still(
-    run: Run, again: bool, until_when: str
+    run: Run, joins: str, until_when: str
 ) -> None:
-    dialog = SwitchingOnDialog("Tangy", lambda: None, again=again)
+    dialog = SwitchingOnDialog("Tangy", lambda: None, joins=joins)
     async with run() as pilot:
         pilot.app.push_screen(dialog)
         await dialog.shown()

@@ -11,7 +11,13 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.text.live_games import CALLED_OFF, KEEPS_GAME, LEAVES_OFF, STARTING, STARTING_AGAIN
+from tangy_tui.text.live_games import (
+    CALLED_OFF,
+    KEEPS_GAME,
+    LEAVES_OFF,
+    STARTING,
+    starting_again_words,
+)
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
@@ -32,7 +38,7 @@ class SwitchingOnDialog(Dialog[None]):
         call_off: Callable[[], None],
         parts: Callable[[], Sequence[str]] = tuple,
         *,
-        again: bool = False,
+        joins: str = "",
     ) -> None:
         """Create the dialog.
 
@@ -40,14 +46,14 @@ class SwitchingOnDialog(Dialog[None]):
             title: the robot's title.
             call_off: cancels the start; may be called more than once.
             parts: returns lines with the parts that are started, and the one in progress.
-            again: whether a game goes on then, which a person has joined.
+            joins: the name of a new person, with whom a game goes on then; "" for a new game.
         """
         super().__init__(None)
         self._title = clean(title)
         self._call_off = call_off
         self._parts = parts
-        self._then = STARTING_AGAIN if again else STARTING
-        self._leaves = KEEPS_GAME if again else LEAVES_OFF
+        self._then = starting_again_words(clean(joins)) if joins else STARTING
+        self._leaves = KEEPS_GAME if joins else LEAVES_OFF
         self._told: Sequence[str] = ()
         self.called_off = False
         """Whether the start was cancelled."""

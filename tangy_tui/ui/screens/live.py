@@ -26,11 +26,15 @@ from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.changes import changed_words
 from tangy_tui.text.control import FINDS_ITS_PLACE, WAITS_FOR_YOU, short_going_words
+from tangy_tui.text.joining import GOES_ON, setting_up_words
 from tangy_tui.text.live_games import LOOKS_ROUND, frozen_words
 from tangy_tui.text.live_news import seated_words
 from tangy_tui.text.missing_devices import missing_words
+from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.panels import KeyLine
@@ -40,6 +44,7 @@ from tangy_tui.ui.screens.live_keys import CARDS_ONLY, FACTS_ONLY, NOT_LIVE
 from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.live_staff import LiveStaff
 from tangy_tui.ui.screens.play_panels import STAFF
+from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status
 
@@ -88,6 +93,9 @@ class LiveScreen(LiveStaff):
         self.mode = MODES.get(world.played_in, self.mode)
         self._faults.beside = self._attend_beside
         self.picture.counts = lambda: bool(self._until_call()) and not self.at_rest
+        self.picture.over = self._over_words
+        self.closes: Callable[[], object] = lambda: None
+        """Switches the robot off; it may be called again."""
         self._seen_doing = ""
         self._frozen = 0.0
         self._tracked = 0.0
@@ -117,6 +125,16 @@ class LiveScreen(LiveStaff):
         return not isinstance(self.world, DeclaredLiveWorld)
 
     # ---------------------------------------------------------------------------------- game
+
+    def _over_words(self) -> str:
+        control = self.control
+        return setting_up_words(control.welcomes) if control.joined else OVER_NOW
+
+    async def switch_off(self) -> None:
+        """Switch the robot off for a new person, while the screen still shows the game."""
+        self.show_status()
+        self.show_staff()
+        await asyncio.shield(asyncio.to_thread(self.closes))
 
     async def _begin_game(self) -> list[Event]:
         if not (self.control.stopped and self.control.past is not None):
@@ -158,6 +176,12 @@ class LiveScreen(LiveStaff):
         for seated in self._seats.news(events, self.world.sitting):
             self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
+        for event in events:
+            # a small window hides the log
+            if isinstance(event, GameChanged) and event.what == "joined":
+                words = changed_words(event, self._workspace.activity, self._workspace.name)
+                if not self.query_one(LogView).display:
+                    self.notify(words, markup=False)
 
     def track(self) -> None:
         """Draw the robot's pose and its estimates; send it a heartbeat."""
@@ -219,11 +243,14 @@ class LiveScreen(LiveStaff):
                 cards=self._has_cards,
                 tells=self.world.eyes is not None,
                 now=self._shows_now,
+                joining=self.control.joined,
             )
         )
 
     def _note(self) -> str:
         """Describe what the robot is doing, or the effect of the keys."""
+        if self.control.joined:
+            return GOES_ON
         if self.control.stopped or self._learning or self.at_rest or not self.control.going:
             return super()._note()
         if self.control.phase == "asking":

@@ -52,11 +52,15 @@ def keys(
     cards: bool = True,
     tells: bool = False,
     now: bool = True,
+    joining: bool = False,
 ) -> tuple[str | Key, ...]:
     """Return the keys and their names while the game runs, is paused, or is over.
 
-    `now`: the panel *Now* is visible; from others, Esc leads back to it.
+    `now`: the panel *Now* is visible; from others, Esc leads back to it. `joining`: the robot is
+    set up for a new person.
     """
+    if joining:
+        return ("stop", "presence", "messages", ("1-7", "show"), "palette", "help")
     if over:
         return play_keys.keys(going=going, over=True)
     return (

@@ -25,6 +25,7 @@ from tangy_tui.app.game_commands import (
     GiveBack,
     GoOn,
     SetAutonomy,
+    StaffNote,
     TakeBackCall,
     TakeOver,
 )
@@ -117,6 +118,9 @@ class LiveStaff(PlayScreen):
         """Hand control back to Tangy, or leave."""
         if self.control.taking_over:
             self._do(GiveBack())
+        elif self.control.joined:
+            if not self.went_back():
+                self._take([StaffNote("joining")])
         else:
             super().action_leave()
 

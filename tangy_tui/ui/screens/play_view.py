@@ -12,6 +12,7 @@ from tangy_tui.app.readiness import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
 from tangy_tui.text.control import stopped_words
+from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.times import local_now
 from tangy_tui.ui.widgets.call_board import CallBoard, column_row
 from tangy_tui.ui.widgets.staff_panel import BOARD, PersonLine, StaffPanel
@@ -57,6 +58,8 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
 def next_line(shown: ViewSource) -> str:
     """Tell what Tangy does next and why, or why it does nothing."""
     control, world = shown.control, shown.world
+    if control.joined:
+        return sets_up_words(control.welcomes)
     if control.supervision.over:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
         if not control.supervision.games:
