@@ -36,7 +36,7 @@ PHASES: dict[Phase, str] = {
     "asking": "Tangy asks staff",
     "halted": "HALTED",
     "staff": "staff lead Tangy",
-    "joining": "somebody new joins, and the game goes on",
+    "joining": "somebody new joins",
 }
 
 LAST_CALLS = 5
