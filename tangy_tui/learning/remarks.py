@@ -241,7 +241,8 @@ class Remarks:
             case "count":
                 return behaviour.name == rule.behaviour  # continues as if nothing were due
             case "beside requester":
-                return not behaviour.attends and behaviour.effect != "go to front"
+                leaves = not behaviour.attends and behaviour.effect != "go to front"
+                return leaves or self._ends_wrongly(shown.step)
             case "requested or away":
                 waits = step.state.situation.request == "AR" or step.state.place != FRONT
                 return waits and behaviour.effect not in ("go to user", "go to front")
@@ -250,6 +251,16 @@ class Remarks:
             case _:
                 return False
 
+    def _ends_wrongly(self, step: Step) -> bool:
+        """Return whether a step ended a request by another behaviour than the file expects.
+
+        A winner who is told to carry on asks no more, and nobody would notice.
+        """
+        due = self._activity.expected.get(step.state.situation)
+        asking = {user.id for user in step.state.users if user.request == "AR"}
+        after = {user.id for user in step.after.users if user.request == "AR"}
+        return due not in (None, step.behaviour) and step.target in asking - after
+
     def _due(self, rule: StageRule, shown: DemonstratedStep) -> str | None:
         """Return the behaviour that the stage rule asks for, or None."""
         match rule.condition:
@@ -257,6 +268,8 @@ class Remarks:
                 return rule.behaviour
             case "count":
                 return rule.since
+            case "beside requester":
+                return self._activity.expected.get(shown.step.state.situation)
             case "requested or away":
                 asked = shown.step.state.situation.request == "AR"
                 return self._with_effect("go to user" if asked else "go to front")

@@ -28,6 +28,7 @@ RefusalKind: TypeAlias = Literal[
     "no such choice",
     "say which",
     "nobody asks",
+    "request ended",
     "nobody to do it for",
     "not with them",
     "no such person",
@@ -330,6 +331,9 @@ class Verifier:
             if target is not None or EVERYBODY in behaviour.to:
                 return None
             nobody = "nobody to do it for"
+        ended = self._observe().closed
+        if target is None and ended and not goes and not behaviour.to:
+            return Refused("request ended", about=self._name(ended))
         if target is None:
             return Refused(nobody, about=f"{behaviour.phrases[0]} 1" if goes else "")
         if not goes and self._observe().place != target:

@@ -38,10 +38,11 @@ from tangy_tui.learning.teaching_events import (
     WrongPerson,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.learning.verification import Refused, Reply, Say
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.text.endings import ending_words
 from tangy_tui.text.games import ended_words
+from tangy_tui.text.refusals import refused_words
 from tangy_tui.text.teaching import complete_words
 from tests.support.games import ended, play
 
@@ -108,6 +109,25 @@ def test_a_skipped_stage_is_reported_once_with_its_behaviour(workspace: Workspac
     assert isinstance(remark, Overlooked)
     assert remark.due == "joke"
     assert same(remark, do(teaching, *["call number"] * 3)) == []
+
+
+def test_a_winner_who_is_sent_away_is_reported_with_the_right_behaviour(
+    workspace: Workspace,
+) -> None:
+    teaching = session(workspace)
+    script = ScriptedTeacher(teaching)
+    while teaching.world.observe().situation.user_state != "bingo":
+        command = script.command()
+        assert isinstance(command, Say)
+        assert not do(teaching, command.text)
+    (remark,) = do(teaching, "encourage")
+    assert isinstance(remark, Overlooked)
+    assert remark.due == "celebrate"
+    (refused,) = (e for e in teaching.apply(Say("celebrate")) if isinstance(e, Refused))
+    assert refused.why == "request ended"
+    assert "ended" in refused_words(refused)
+    teaching.apply(Undo())
+    assert not do(teaching, "celebrate")
 
 
 def test_a_contradiction_to_an_own_step_is_reported_once(workspace: Workspace) -> None:
