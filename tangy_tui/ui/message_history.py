@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MOST = 100
 """The most messages that are kept."""
+LONGEST_WORK = 600.0
+"""How long, in s, a message on work in progress stays at most."""
 
 
 class MessageHistoryApp(App[None]):
@@ -49,6 +51,10 @@ class MessageHistoryApp(App[None]):
             return
         severity: SeverityLevel = "error" if bad else "information"
         self.notify(clean(sentence), severity=severity, timeout=seconds, markup=False)
+
+    def show_work(self, sentence: str) -> None:
+        """Show what the program works on, until the notifications are cleared."""
+        super().notify(clean(sentence), timeout=LONGEST_WORK, markup=False)
 
     def action_messages(self) -> None:
         """List the last messages."""

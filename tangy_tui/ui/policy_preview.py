@@ -22,7 +22,7 @@ async def show_why(
     from tangy_tui.ui.dialogs.why import WhyDialog
 
     app: Any = screen.app
-    app.say(THINKING)
+    app.show_work(THINKING)
     worker: Worker[DecisionReasons] = screen.run_worker(
         lambda: grounds(workspace, present, situation),
         thread=True,

@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-LONGEST_WORK = 600.0  # s until the notice of slow work expires, if the work has not ended
 
 PLAYING = 20.0
 """The speed of watched games (ratio to real time) if Tangy is silent and none is given."""
@@ -169,8 +168,12 @@ class Program(SoundingApp):
         """Open the teaching screen."""
         from tangy_tui.ui.screens.teach import TeachScreen
 
+        self.push_screen(TeachScreen(self.workspace, teaching, tour=self.take_tour()))
+
+    def take_tour(self) -> bool:
+        """Return whether the tour is due; it is due once."""
         tour, self.new_teacher = self.new_teacher, False
-        self.push_screen(TeachScreen(self.workspace, teaching, tour=tour))
+        return tour
 
     def action_name(self) -> None:
         """Change the teacher's name."""
@@ -370,7 +373,7 @@ class Program(SoundingApp):
         if self._busy:
             return None
         self._busy = True
-        self.say(what, seconds=LONGEST_WORK)
+        self.show_work(what)
         try:
             worker: Worker[T] = self.run_worker(
                 work, thread=True, exit_on_error=False, group="thread"

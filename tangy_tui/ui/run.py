@@ -85,7 +85,7 @@ def run_teaching(
         for number in range(games if pace else 1):
             screen = TeachScreen(
                 workspace, teaching, resume=resume, another=number > 0, scripted=pace,
-                tour=program.new_teacher,
+                tour=program.take_tour(),
             )  # fmt: skip
             complete = await program.push_screen_wait(screen)
             if pace and not complete:

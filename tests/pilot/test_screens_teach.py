@@ -279,7 +279,10 @@ async def test_why_shows_the_decision_learnt_so_far(run: Run, workspace: Workspa
         dialog = pilot.app.screen
         assert isinstance(dialog, WhyDialog)
         assert dialog.why.decision.behaviour == "call number"
-        await pilot.press("escape", "escape", "up", "up", "up", "up", "enter")
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "working out" not in screen_text(pilot.app)
+        await pilot.press("escape", "up", "up", "up", "up", "enter")
         await ended(pilot, "why")
         chosen = pilot.app.screen
         assert isinstance(chosen, WhyDialog)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 from textual.pilot import Pilot
@@ -11,6 +12,7 @@ from tangy_tui.app.teacher_profile import TeacherProfile, save_profile
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.run import run_teaching
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -76,6 +78,27 @@ async def test_the_tour_is_shown_once(run: Run, workspace: Workspace) -> None:
         await pilot.press("t", "enter")
         await pilot.pause()
         assert "Welcome" not in screen_text(pilot.app)
+
+
+async def test_the_tour_does_not_come_back_in_the_next_game(run: Run, workspace: Workspace) -> None:
+    started: list[Any] = []
+    with patch("tangy_tui.ui.run._run", lambda _, start, *more, **named: started.append(start)):
+        run_teaching(
+            workspace,
+            workspace.teaching("", 1),
+            ears=None,
+            resume=False,
+            games=1,
+            speed=None,
+            ascii_only=False,
+            asks_name=True,
+        )
+    app = Program(workspace, started[0], asks_name=True, clock=StillClock())
+    async with run(app=app) as pilot:
+        await pilot.pause()
+        await pilot.press(*"Ada", "enter")
+        await shows(pilot, "Welcome, Ada.")
+        assert not app.take_tour()
 
 
 async def teach_one_step(workspace: Workspace, run: Run, *renames: str) -> list[str]:
