@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, assert_never
 
 from tangy_profiles.game_records import ChangeKind
@@ -29,6 +29,28 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 
+ClaimKind = Literal["claim right", "claim late", "claim wrong"]
+CLAIM_SECONDS, LONGEST_CLAIM = 15.0, 60.0
+"""A claim that was told is shown so long at least (s), until the next call, and so long at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimNow:
+    """A claim of staff in the running game, and its result as far as it is known."""
+
+    card: int
+    person: str
+    """Who has the card; "" if nobody knows."""
+    kind: ClaimKind | None
+    """None: the number that is just being called may decide it."""
+    told: float | None = None
+    """When Tangy began to tell the group (s of the world); None: it finishes its step first."""
+    calls: int = 0
+    """How many numbers were called by then."""
+    game: str = ""
+    """The id of the game."""
+
+
 class GamePlanControls:
     """Changes the plan of supervised games; refuses each change if the game has no plan."""
 
@@ -39,6 +61,7 @@ class GamePlanControls:
         self._by = by
         self._said: list[ComesIn | GoesAway] = []
         """Who staff said has come or left, until it takes effect after the present step."""
+        self._claimed: ClaimNow | None = None
 
     @property
     def world(self) -> PlannedGame | None:
@@ -98,7 +121,12 @@ class GamePlanControls:
         return "" if world is None else "".join(map(world.activity.deck.label, world.calling))
 
     def say_early(self, command: GameCommand) -> None:
-        """Log who comes or leaves at once, unless that is refused; the game changes later."""
+        """Log who comes or leaves at once, unless that is refused; the game changes later.
+
+        A claim is judged at once; the group is told later.
+        """
+        if isinstance(command, ClaimCard):
+            self._claimed = self.judged(command)
         if self._idle or not isinstance(command, ComesIn | GoesAway):
             return
         if self._refuses_move(command, self.away) is None:
@@ -107,8 +135,43 @@ class GamePlanControls:
 
     def forget_early(self, command: GameCommand) -> None:
         """Forget what was logged early, once its command was carried out or failed."""
+        claimed = self._claimed
+        if isinstance(command, ClaimCard) and claimed is not None and claimed.told is None:
+            self._claimed = None
         if isinstance(command, ComesIn | GoesAway) and command in self._said:
             self._said.remove(command)
+
+    def judged(self, claim: ClaimCard) -> ClaimNow | None:
+        """Return the result of a claim by the numbers called so far; None if it is refused."""
+        world, claim = self.world, self.with_card(claim)
+        if world is None or self._idle or self._no_card(claim) is not None:
+            return None
+        holder, numbers = claim.person or world.holder(claim.card), world.numbers_on(claim.card)
+        kind: ClaimKind | None = self._verdict(world, claim.card, holder)
+        if kind == "claim wrong" and numbers is not None and {*world.calling} & {*numbers}:
+            kind = None
+        return ClaimNow(claim.card, holder, kind)
+
+    @property
+    def claim(self) -> ClaimNow | None:
+        """The last claim, while it is news: until the next call, and for a while; or None."""
+        claimed, world = self._claimed, self.world
+        if claimed is None or world is None or self._idle:
+            return None
+        if claimed.told is None:
+            return claimed
+        ago, calls = world.seconds - claimed.told, len(world.called_now)
+        over = ago >= LONGEST_CLAIM or (ago >= CLAIM_SECONDS and calls > claimed.calls)
+        before = claimed.game != self._supervision.game.game
+        return None if over or before else claimed
+
+    @staticmethod
+    def _verdict(world: PlannedGame, card: int, holder: str) -> ClaimKind:
+        wins = world.wins(card)
+        late = bool(wins and world.activity.rules.claim_late and holder)
+        if late and world.is_won_before(holder):
+            return "claim late"
+        return "claim right" if wins else "claim wrong"
 
     @property
     def away(self) -> frozenset[str]:
@@ -208,18 +271,17 @@ class GamePlanControls:
         if (refused := self._no_card(claim)) is not None:
             return [refused]
         card, person = claim.card, claim.person
-        wins = world.wins(card)
         rules, present = world.activity.rules, world.patterns.present
         pattern = present or next(iter(rules.patterns), None)
         holder = person or world.holder(card)
-        kind: Literal["claim right", "claim late", "claim wrong"]
-        if not wins:
-            kind, words = "claim wrong", rules.claim_wrong
-        elif rules.claim_late and holder and world.is_won_before(holder):
-            kind, words = "claim late", rules.claim_late
-        else:
-            kind, words = "claim right", rules.claim_right
+        kind = self._verdict(world, card, holder)
+        words = {"claim right": rules.claim_right, "claim late": rules.claim_late}.get(
+            kind, rules.claim_wrong
+        )
         self._note(kind, person=holder or "", detail=str(card))
+        self._claimed = ClaimNow(
+            card, holder, kind, world.seconds, len(world.called_now), self._supervision.game.game
+        )
         said = words.format(card=card, pattern=pattern.label if pattern else "")
         world.announce(said)
         people = (holder,) if holder else ()

@@ -12,6 +12,7 @@ from tangy_tui.text.decisions import shown_here
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_commands import Autonomy, GameCommand, NoteKind, Proposal, StaffNote
+    from tangy_tui.app.plan_controls import ClaimNow
 
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",
@@ -270,6 +271,28 @@ NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it.
 BUSY = "Not now: Tangy is busy."
 WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
+
+
+def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = "") -> str:
+    """Tell the result of a claim while it is news, and that Tangy tells the group.
+
+    `calling` is the label of the number that Tangy is just saying.
+    """
+    card = f"Card {claimed.card}" + (f" ({name(claimed.person)})" if claimed.person else "")
+    told = claimed.told is not None
+    match claimed.kind:
+        case None:
+            return f"{card}: Tangy checks it as soon as it has called {calling or 'the number'}."
+        case "claim right":
+            then = "goes there next" if claimed.person else "tells everybody"
+            done = f"{card} wins." + (f" Tangy {then}." if told else "")
+        case "claim late":
+            done = f"{card} wins, too, but another card was first."
+        case "claim wrong":
+            done = f"{card} does not win yet." + (" Tangy tells everybody." if told else "")
+        case forgotten:
+            assert_never(forgotten)
+    return done if told else f"{done} Tangy finishes this, then tells everybody."
 
 
 def waits_words(command: GameCommand, name: Callable[[str], str]) -> str:

@@ -10,10 +10,11 @@ import pytest
 
 from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.game_commands import AskFor, ClaimCard, Pause
+from tangy_tui.app.plan_controls import CLAIM_SECONDS
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.staff_view import person_words
-from tangy_tui.ui.screens.play_view import ViewSource, next_line
+from tangy_tui.ui.screens.play_view import ViewSource, news_line, next_line
 from tests.app.test_interruption import Robot
 from tests.app.test_planned_games import Planned
 
@@ -111,3 +112,33 @@ def test_the_countdown_stands_still_only_while_a_step_is_carried_out(robot: Robo
     assert not robot.control.counts_down  # Tangy goes to somebody first
     robot.control.apply(Pause())
     assert not robot.control.counts_down
+
+
+def test_the_result_of_a_claim_is_told_at_once_and_stays_until_the_next_call(
+    robot: Robot,
+) -> None:
+    robot.next(2)
+    world, plan = robot.world, robot.control.plan
+    shown = ViewSource(world, robot.control, 0, robot.workspace.name)
+    claim = ClaimCard(17, "user3")
+    card = f"Card 17 ({robot.workspace.name('user3')})"
+    plan.say_early(claim)  # while Tangy carries out its step
+    assert news_line(shown) == (
+        f"{card} does not win yet. Tangy finishes this, then tells everybody."
+    )
+    robot.control.apply(claim)
+    told = f"{card} does not win yet. Tangy tells everybody."
+    assert news_line(shown) == told
+    robot.link.time += CLAIM_SECONDS
+    assert news_line(shown) == told
+    robot.next(1)
+    assert news_line(shown) == ""
+
+
+def test_a_number_that_is_being_called_may_decide_a_claim(robot: Robot) -> None:
+    numbers = robot.world.numbers_on(17)
+    assert numbers is not None
+    robot.world.calls.calling = numbers[:1]
+    robot.control.plan.say_early(ClaimCard(17, "user3"))
+    shown = ViewSource(robot.world, robot.control, 0, robot.workspace.name)
+    assert "Tangy checks it as soon as it has called" in news_line(shown)

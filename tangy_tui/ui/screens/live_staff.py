@@ -83,6 +83,7 @@ class LiveStaff(PlayScreen):
         if not (await asyncio.wait({done}, timeout=ANSWERS_SECONDS))[0]:
             self._tell_now(waits_words(command, self._workspace.name), "dim")
             self.picture.show_scene(0, drive=False, pace=0)
+            self.show_staff()
         self._take(await done)
 
     def action_pause(self) -> None:

@@ -11,7 +11,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.readiness import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
-from tangy_tui.text.control import stopped_words
+from tangy_tui.text.control import claimed_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.times import local_now
 from tangy_tui.ui.widgets.call_board import CallBoard, column_row
@@ -52,7 +52,16 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
         person_lines(view.people, shown.name),
         [column_row(column, view.called, BOARD) for column in columns],
         text.said_words(shown.said) if shown.said and as_planned(shown.world) else "",
+        news_line(shown),
     )
+
+
+def news_line(shown: ViewSource) -> str:
+    """Tell the result of the last claim; "" if it is no news."""
+    claimed = shown.control.plan.claim
+    if claimed is None:
+        return ""
+    return claimed_words(claimed, shown.name, shown.control.plan.calling)
 
 
 def next_line(shown: ViewSource) -> str:

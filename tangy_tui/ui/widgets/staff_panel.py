@@ -83,7 +83,7 @@ class StaffPanel(RowView, can_focus=True):
     def __init__(self) -> None:
         super().__init__(id="staff")
         self.border_title = TITLE
-        self._call, self._next, self._said = "", "", ""
+        self._call, self._next, self._said, self._news = "", "", "", ""
         self._facts: tuple[Fact, ...] = ()
         self._people: tuple[PersonLine, ...] = ()
         self._board: tuple[Row, ...] = ()
@@ -97,14 +97,19 @@ class StaffPanel(RowView, can_focus=True):
         people: Sequence[PersonLine],
         board: Sequence[Row] = (),
         said: str = "",
+        news: str = "",
     ) -> None:
         """Show the last call, the next step, facts beside the call, people, and the board.
 
-        The title tells what Tangy `said`, as far as there is room.
+        The title tells what Tangy `said`, as far as there is room. `news` stand above all else.
         """
         if said != self._said:
             self._said = said
             self._draw_title()
+        if news != self._news:
+            self._news = news
+            self.return_to_top()
+            self._draw()
         new = call, next_step, tuple(facts), tuple(people), tuple(board)
         if new != (self._call, self._next, self._facts, self._people, self._board):
             if new[:2] != (self._call, self._next):
@@ -150,7 +155,9 @@ class StaffPanel(RowView, can_focus=True):
         if len(next_lines) > most:  # a sentence must not look whole if it is cut
             next_lines[most - 1] = shorten(" ".join(next_lines[most - 1 :]), width)
         next_lines = next_lines[:most]
-        rows: list[Row] = [((line, "strong"),) for line in next_lines]
+        news = wrap(clean(self._news), width)[:2] if self._news else []
+        rows: list[Row] = [((line, "warn"),) for line in news]
+        rows += [((line, "strong"),) for line in next_lines]
         rows += self._block(width, height)
         rows += self._everybody(width, max(1, height - len(rows)))
         self._rows.put(rows)
