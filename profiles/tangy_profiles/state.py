@@ -192,3 +192,5 @@ class Outcome(NamedTuple):
     """How many rounds were still to come when the action ended the game."""
     cut_short: bool = False
     """Whether the robot stopped by itself, because the program was silent for a moment."""
+    obsolete: bool = False
+    """Whether the robot did nothing, because it found another state than Tangy had decided on."""

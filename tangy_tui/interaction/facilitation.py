@@ -47,6 +47,7 @@ _LOG = logging.getLogger(__name__)
 
 NOT_DONE = "(it could not be carried out)"
 CUT_SHORT = "(Tangy stopped for a moment: this program was too slow; Tangy tries again)"
+OBSOLETE = "(Tangy looked at the card again: this is no longer needed)"
 MOST_STEPS = 1_000
 """Steps after which a game is considered endless: calling all 75 numbers takes about 120."""
 
@@ -355,7 +356,7 @@ class Facilitation:
         elif refused(behaviour, state, outcome, after):
             self._refused = target
         expected = activity.expected.get(state.situation, behaviour.name)
-        undone = CUT_SHORT if outcome.cut_short else NOT_DONE
+        undone = CUT_SHORT if outcome.cut_short else OBSOLETE if outcome.obsolete else NOT_DONE
         speech, image = activity.words_of(
             action, outcome, lambda person: self._names.get(person, person)
         )

@@ -85,14 +85,14 @@ class FaultWatch:
     def after(self, events: Sequence[GameEvent], *, ordered: bool = False) -> list[Event]:
         """Check a behaviour against its expected effects; end a finished game.
 
-        If it was `ordered` by staff (a STOP, or staff took over), or the program's own silence cut
-        it short, its effects are neither a fault nor a refusal.
+        If it was `ordered` by staff (a STOP, or staff took over), the program's own silence cut it
+        short, or it was obsolete, its effects are neither a fault nor a refusal.
         """
         told: list[Event] = []
         for event in events:
             told.append(event)
             if isinstance(event, Acted):
-                no_fault = self._was_cut_short(event) or ordered
+                no_fault = self._was_cut_short(event) or event.outcome.obsolete or ordered
                 told += self._take_in(event) if no_fault else self._compare(event)
             elif isinstance(event, Unsure) and not event.fault:
                 told += self._take(diagnose(self.book, NOT_SHOWN), None)

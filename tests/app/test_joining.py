@@ -11,6 +11,7 @@ import pytest
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.game_records import GameChange, GameEnding, GameResumed
 from tangy_profiles.game_world import LIVE
 from tangy_profiles.past_game import PastGame
@@ -113,8 +114,8 @@ def test_a_fact_called_joins_is_no_new_person() -> None:
     assert not isinstance(read_command("user2: joins", str), Joins)
 
 
-@pytest.mark.parametrize("marked", [1, 0])
-def test_tangy_looks_at_the_card_again_to_which_it_returns(taught: Path, marked: int) -> None:
+@pytest.mark.parametrize("corrected", [False, True])
+def test_tangy_looks_at_the_card_again_to_which_it_returns(taught: Path, corrected: bool) -> None:
     workspace = Workspace(taught)
     before = LiveGame(workspace)
     before.link.cards["user3"] = LaidCard(7, marked=1)
@@ -125,9 +126,16 @@ def test_tangy_looks_at_the_card_again_to_which_it_returns(taught: Path, marked:
     assert before.world.tracker.seen == "incorrectly marked"
     before.told(Joins("Berta"))
     after = LiveGame(workspace, resume_joined(workspace, LIVE), goes_on=True)
-    after.link.cards["user3"] = LaidCard(7, marked=marked)
+    deck = workspace.activity.deck
+    numbers = numbers_of(deck, 7, after.link.setup.deck_seed)
+    right = called_cells(deck, numbers, set(after.world.scene().called))
+    after.link.cards["user3"] = LaidCard(7, marked=right if corrected else 1)
     (acted,) = (one for one in after.control.next() if isinstance(one, Acted))
-    assert acted.outcome.completed == bool(marked)
+    assert acted.outcome.completed != corrected
+    assert acted.outcome.obsolete == corrected
+    assert not after.control.supervision.faults
+    assert (after.world.tracker.seen == "correctly marked") is corrected
+    after.play(1)
     assert not after.control.supervision.faults
     workspace.close()
 

@@ -182,12 +182,12 @@ class LiveWorld(LivePlan):
             return Outcome(False, 0.0, (), None)
         numbers: tuple[int, ...] = ()
         response: Response | None = None
-        succeeded, self.broken = False, ""
+        succeeded, obsolete, self.broken = False, False, ""
         try:
             if self.tracker.allows(behaviour):
                 if behaviour.effect not in DRIVES and not self.lost:
-                    self._remedies.take_place()  # staff may have driven it
-                found = self._numbers_of(action) if self.tracker.allows(behaviour) else None
+                    obsolete = self._remedies.take_place()  # staff may have driven it
+                found = None if obsolete else self._numbers_of(action)
                 if found is not None:
                     numbers = found
                     response, succeeded = self._carry_out(action, numbers)
@@ -198,7 +198,7 @@ class LiveWorld(LivePlan):
         if not self.broken and not self.over:
             self.requests.look_twice(self.tracker)
         seconds, cut = max(0.0, self.link.time - began), self.broken == ALONE
-        return Outcome(succeeded, seconds, numbers, response, cut_short=cut)
+        return Outcome(succeeded, seconds, numbers, response, cut_short=cut, obsolete=obsolete)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
         """Return the numbers of an action; None if there is nothing to ask."""

@@ -96,18 +96,25 @@ class RecoveryActions:
         if hypot(pose.x - at.x, pose.y - at.y) > AWAY and not world.drive(place):
             raise DeviceError("The robot does not get back to where it was.")
 
-    def take_place(self) -> None:
-        """Return to the robot's place in the game; see the card there if it has not yet.
+    def take_place(self) -> bool:
+        """Return to the robot's place in the game; look at the card there if it has not yet.
 
         The log tells the state of a card, but not the numbers that a request names.
+
+        Returns:
+            Whether the card is in another state now, so that Tangy has to decide again.
 
         Raises:
             DeviceError: it has to stop, or finds no way.
         """
         self.go_back(knows_place=True)
-        if self.looks_first:
-            self._world.read_card(self._world.tracker.place)
-            self.looks_first = False
+        if not self.looks_first:
+            return False
+        tracker = self._world.tracker
+        before = tracker.seen
+        self._world.read_card(tracker.place)
+        self.looks_first = False
+        return tracker.seen != before
 
     def _look_again(self, remedy: Remedy) -> None:
         """Check whether the reason for a halt is gone, when staff say so."""
