@@ -115,6 +115,8 @@ def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
         terminal.until("coming to you")
         terminal.type("\x18")
         assert "STOPPED" in terminal.until("STOPPED")
+        terminal.type("\x1b")  # back to the staff view
+        terminal.until("Tangy was stopped.")
         terminal.type("\x1b")
         terminal.until("Leave in the middle")
         terminal.settle()  # a key from before the question does not answer it
