@@ -274,7 +274,7 @@ BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
 def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = "") -> str:
-    """Tell the result of a claim while it is news, and that Tangy tells the group.
+    """Tell the result of a claim while it is news, and what Tangy does about it.
 
     `calling` is the label of the number that Tangy is just saying.
     """
@@ -289,7 +289,7 @@ def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = 
         case "claim late":
             done = f"{card} wins, too, but another card was first."
         case "claim wrong":
-            done = f"{card} does not win yet." + (" Tangy tells everybody." if told else "")
+            done = f"{card} does not win yet."
         case forgotten:
             assert_never(forgotten)
     return done if told else f"{done} Tangy finishes this, then tells everybody."

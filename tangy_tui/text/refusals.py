@@ -27,7 +27,7 @@ def refused_words(refused: Refused) -> str:
         case "nobody asks":
             return _for_nobody("nobody asks for help", about)
         case "request ended":
-            return f"Nobody asks for help now: your last step ended {about}'s request."
+            return f"Nobody asks for help now: the last step ended {about}'s request."
         case "nobody to do it for":
             return _for_nobody("there is nobody to do it for", about)
         case "not with them":

@@ -127,7 +127,7 @@ def test_the_result_of_a_claim_is_told_at_once_and_stays_until_the_next_call(
         f"{card} does not win yet. Tangy finishes this, then tells everybody."
     )
     robot.control.apply(claim)
-    told = f"{card} does not win yet. Tangy tells everybody."
+    told = f"{card} does not win yet."
     assert news_line(shown) == told
     robot.link.time += CLAIM_SECONDS
     assert news_line(shown) == told

@@ -111,8 +111,9 @@ def test_a_skipped_stage_is_reported_once_with_its_behaviour(workspace: Workspac
     assert same(remark, do(teaching, *["call number"] * 3)) == []
 
 
-def test_a_winner_who_is_sent_away_is_reported_with_the_right_behaviour(
-    workspace: Workspace,
+@pytest.mark.parametrize("wrong", ["encourage", "call number"])
+def test_a_winner_who_is_sent_away_or_left_is_reported_with_the_right_behaviour(
+    workspace: Workspace, wrong: str
 ) -> None:
     teaching = session(workspace)
     script = ScriptedTeacher(teaching)
@@ -120,12 +121,13 @@ def test_a_winner_who_is_sent_away_is_reported_with_the_right_behaviour(
         command = script.command()
         assert isinstance(command, Say)
         assert not do(teaching, command.text)
-    (remark,) = do(teaching, "encourage")
+    (remark,) = do(teaching, wrong)
     assert isinstance(remark, Overlooked)
     assert remark.due == "celebrate"
-    (refused,) = (e for e in teaching.apply(Say("celebrate")) if isinstance(e, Refused))
-    assert refused.why == "request ended"
-    assert "ended" in refused_words(refused)
+    if wrong == "encourage":
+        (refused,) = (e for e in teaching.apply(Say("celebrate")) if isinstance(e, Refused))
+        assert refused.why == "request ended"
+        assert "ended" in refused_words(refused)
     teaching.apply(Undo())
     assert not do(teaching, "celebrate")
 
