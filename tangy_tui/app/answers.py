@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from tangy_tui.app.game_commands import StaffNote
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Asked, Offered, Reply, Say, Verification, Verifier
 from tangy_tui.monitoring.supervision import Supervision

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tangy_tui.app.game_commands import Autonomy, Proposal
+from tangy_tui.app.game_commands import Autonomy
+from tangy_tui.app.staff_notes import Proposal
 from tangy_tui.learning.policy import Decision
 
 SURE = 0.9

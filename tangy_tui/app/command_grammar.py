@@ -1,4 +1,4 @@
-"""The grammar of typed commands for teaching, games and drills, on screens and in the console.
+"""The grammar of typed commands for games, on screens and in the console.
 
 The parsers return `None` for words that are no command. The caller then takes them as an answer
 if Tangy asks, or as a behaviour in words for the phrasebook while teaching. Any sentence that
@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from functools import partial
-from typing import Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
@@ -44,122 +42,15 @@ from tangy_tui.app.game_commands import (
     Tell,
     VoidResponse,
 )
-from tangy_tui.app.keymap import ACTIONS
 from tangy_tui.app.plan_grammar import read_planned
-from tangy_tui.language.steering import WHILE_TEACHING, steering_of
+from tangy_tui.language.steering import steering_of
 from tangy_tui.language.stop_sentence import stops
-from tangy_tui.learning.remarks import answers_to
-from tangy_tui.learning.teaching_events import (
-    Discard,
-    Finish,
-    Next,
-    Redo,
-    Remark,
-    RemarkAnswer,
-    SameWhatever,
-    Settle,
-    Undo,
-)
-from tangy_tui.learning.verification import Reply, StopCommand
-
-Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "patterns"]
-"""Questions about the program or the game; they change nothing."""
-
-INQUIRIES: dict[str, Inquiry] = {
-    **dict.fromkeys(("help", "?"), "help"),
-    "where": "where",
-    "why": "why",
-    **dict.fromkeys(("what", "what to do", "what should i do", "what should i do?"), "what to do"),
-    "faults": "faults",
-    "phrases": "phrases",
-    **dict.fromkeys(("patterns", "pattern", "which patterns"), "patterns"),
-}
-
-WHOSE_CARDS = ("cards", "card", "whose card", "whose cards", "who has which card")
-"""Questions in a game about whose card is whose."""
-
-WHO_IS_HERE = ("people", "who", "who is here", "who is there", "who waits")
-"""Questions in a game about who is here, and how long they have waited."""
+from tangy_tui.learning.verification import Reply
 
 ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
 LONGEST_NUMBER = 4  # digits
 LEAVING = ("quit", "exit", "leave", "leave the game", "go home")
 
-
-@dataclass(frozen=True, slots=True)
-class Leave:
-    """Leave; confirmed steps are kept."""
-
-
-@dataclass(frozen=True, slots=True)
-class AgainFrom:
-    """Demonstrate the present game again from a step, counted from 1; None: no step was given."""
-
-    step: int | None
-
-
-_WHATEVER = re.compile(r"(?:always )?(?:it is |do |that is )?the same whatever(.*)")
-
-
-@dataclass(frozen=True, slots=True)
-class Perform:
-    """Run an action of the keymap; `on` is the wanted state of a switch if the words name it."""
-
-    action: str
-    on: bool | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class TeachAs:
-    """The teacher's name."""
-
-    name: str
-
-
-TeachingWord: TypeAlias = (
-    Undo
-    | SameWhatever
-    | Redo
-    | Next
-    | Discard
-    | Finish
-    | AgainFrom
-    | Leave
-    | StopCommand
-    | TeachAs
-    | Perform
-    | Inquiry
-)
-
-TEACHING: dict[str, TeachingWord] = {
-    **dict.fromkeys(("undo", "take that back"), Undo()),
-    "redo": Redo(),
-    **dict.fromkeys(("next", "next game", "new game", "another game"), Next()),
-    **dict.fromkeys(
-        ("discard the game", "discard game", "discard this game", "throw the game away"), Discard()
-    ),
-    **dict.fromkeys(("finish the demonstration", "finish here", "that is all"), Finish()),
-    **dict.fromkeys(("start over", "begin again", "begin anew", "start again"), AgainFrom(1)),
-    **dict.fromkeys(("shown", "seen"), "shown"),
-    **dict.fromkeys(("voice on", "speak"), Perform("voice", on=True)),
-    **dict.fromkeys(("voice off", "be quiet"), Perform("voice", on=False)),
-    **dict.fromkeys(("pause listening", "stop listening"), Perform("listen", on=False)),
-    **dict.fromkeys(("listen", "listen again"), Perform("listen", on=True)),
-    "guided game": Perform("guided"),
-    **dict.fromkeys(("rule", "make it a rule", "make a rule"), Perform("rule")),
-    **dict.fromkeys(("play", "play a game", "let tangy play"), Perform("begin")),
-    **dict.fromkeys(("my name", "change my name", "who am i"), Perform("name")),
-}
-"""Commands while teaching, besides the word of every action of the keymap."""
-
-PERFORMED = frozenset(
-    {
-        *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
-        *("learn", "library", "guided", "filter", "quit", "name", "messages"),
-    }
-)
-"""Actions of the keymap whose typed words work on the teaching screen as their keys do elsewhere.
-"""
 
 FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("pause", "wait a moment"), Pause()),
@@ -217,19 +108,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
 )
 """The commands that help lists, with their meanings."""
 
-_AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
-_TANGY = r"(?:you|it|tangy|the robot|he|she)"
-_WHY = re.compile(
-    r"why(?: (?:that|this|now|not|so))?"
-    rf"|(?:why|what) (?:is|are|does|do|did|will|would) {_TANGY}"
-    r"(?: (?:doing|do|going to do|up to|waiting|waiting for|wait|wait for|stand|standing))"
-    r"(?: (?:that|this|it|there|here|still))?(?: (?:now|next|then|right now|at the moment))?"
-    r"|what(?: is|'s|s) (?:happening|going on|next|up)(?: here)?(?: now| next)?"
-    r"|what (?:happens|comes) (?:now|next)|what next|what now"
-)
-"""Questions about what Tangy does now or next."""
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
-_CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
 _TOLD = re.compile(r"(.{1,60}?)(:| says| answers| answered) (\S.*)", re.I)
 _ANSWER = re.compile(r"(?:answer:|the answer is) (\S.*)", re.I)
@@ -317,76 +196,6 @@ def command_reader(
     """Return a command parser for games of an activity; see `read_command`."""
     title = frozenset(activity.title.casefold().split())
     return partial(read_command, find_person=find_person, game=title, rules=activity.rules)
-
-
-def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
-    """Parse words as a command of teaching; None if they are none."""
-    words = " ".join(text.split()).casefold()
-    if words == "stop" or stops(text, game):
-        return StopCommand(text)
-    if called := _CALLED.fullmatch(" ".join(text.split()).rstrip(".!")):
-        return TeachAs(called[1])
-    if rule := _WHATEVER.fullmatch(words):
-        return SameWhatever(_named_facts(rule[1]))
-    if again := _AGAIN.fullmatch(words):
-        number = again[1]
-        return AgainFrom(int(number) if number and number.isdecimal() else None)
-    if (way := steering_of(text)) in WHILE_TEACHING:
-        words = str(way)
-    if words in TEACHING:
-        return TEACHING[words]
-    return Leave() if words in LEAVING else read_program(words)
-
-
-def _named_facts(words: str) -> tuple[str, ...]:
-    """Return the facts that words name: "the clock and hinted are"."""
-    kept = re.sub(r"\b(?:is|are|the|happens|comes)\b", " ", words)
-    return tuple(" ".join(one.split()) for one in re.split(r",| and | or ", kept) if one.strip())
-
-
-def read_program(text: str) -> Perform | Inquiry | None:
-    """Parse words as a command or question to the program itself; None if they are neither."""
-    words = " ".join(text.split()).casefold()
-    if isinstance(word := TEACHING.get(words), Perform):
-        return word
-    action = next((a.id for a in ACTIONS if a.id in PERFORMED and a.word == words), None)
-    return Perform(action) if action is not None else read_inquiry(text)
-
-
-def read_screen(text: str) -> Perform | None:
-    """Parse words as a command that a screen carries out like a key."""
-    word = read_program(text)
-    if isinstance(word, str):
-        return Perform(word) if word in ("why", "help", "phrases") else None
-    return word
-
-
-SETTLING: dict[str, RemarkAnswer] = {
-    "this": "this",
-    "earlier": "earlier",
-    "both": "both",
-    **dict.fromkeys(("keep", "keep it", "y", "yes"), "keep"),
-    **dict.fromkeys(("later", "decide later", "n", "no"), "later"),
-}
-"""Words that answer a remark, besides the numbers."""
-
-
-def read_settling(text: str, remark: Remark) -> Settle | None:
-    """Parse words as an answer to a remark; None if they are none of its answers."""
-    words, answers = text.strip().casefold(), answers_to(remark)
-    if words.isdecimal() and words.isascii() and len(words) <= LONGEST_NUMBER:
-        number = int(words)
-        return Settle(answers[number - 1]) if 1 <= number <= len(answers) else None
-    answer = SETTLING.get(words)
-    return Settle(answer) if answer == "later" or answer in answers else None
-
-
-def read_inquiry(text: str) -> Inquiry | None:
-    """Parse words as a question to the program, None if they are none."""
-    words = " ".join(text.split()).casefold()
-    if words in INQUIRIES:
-        return INQUIRIES[words]
-    return "why" if _WHY.fullmatch(words.replace("\u2019", "'").rstrip(" ?.!")) else None
 
 
 def read_answer(text: str) -> Reply | None:

@@ -5,14 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from tangy_tui.app.game_commands import (
-    ClaimCard,
-    EndGame,
-    GameCommand,
-    GoOn,
-    HasCard,
-    TakeBackCall,
-)
+from tangy_tui.app.game_commands import ClaimCard, EndGame, GameCommand, GoOn, HasCard, TakeBackCall
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_controller import GameController

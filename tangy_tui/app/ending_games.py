@@ -11,8 +11,9 @@ from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import TAKEN_OVER, StaffNote
+from tangy_tui.app.game_commands import TAKEN_OVER
 from tangy_tui.app.robot_controls import ENDED, PROGRAM_ENDS, RobotControls
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 LEAVES_SECONDS = 1.0  # in which the current behaviour is aborted

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, Reached, StaffNote
+from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, Reached
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 Result: TypeAlias = Event | StaffNote

@@ -43,18 +43,17 @@ from tangy_tui.app.game_commands import (
     Pause,
     Phase,
     PlanCommand,
-    Proposal,
     Reached,
     SetAutonomy,
-    StaffNote,
     StopRobot,
     TakeOver,
     Tell,
     VoidResponse,
 )
-from tangy_tui.app.pausing_games import PausingGames
+from tangy_tui.app.handing_over import HandingOver
 from tangy_tui.app.plan_controls import GamePlanControls
 from tangy_tui.app.robot_controls import RobotControls
+from tangy_tui.app.staff_notes import Proposal, StaffNote
 from tangy_tui.app.staff_view import StaffView, StaffWatch, next_step
 from tangy_tui.learning.verification import Verification
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -66,7 +65,7 @@ ControllerOutput: TypeAlias = Result | Verification
 TOOK_OVER = "You say what Tangy does next."
 
 
-class GameController(PausingGames):
+class GameController(HandingOver):
     """Games in which staff can intervene. `begin` each, then call `next` until it is over."""
 
     def __init__(
@@ -332,32 +331,6 @@ class GameController(PausingGames):
         """Log what staff did (see `Supervision.note`), unless the log is full."""
         with suppress(TangyError):
             self.supervision.note(did, by or self.by, **what)
-
-    def _take_over(self) -> list[Result]:
-        if refused := self.refusal():
-            return [refused]
-        self.taking_over = self.going = True
-        self._watch.go_on()
-        self.autonomy.reset()
-        self.note("took over")
-        return [StaffNote("takes over")]
-
-    def _give_back(self) -> list[Result]:
-        question = self.supervision.question
-        if not self.taking_over and question is None:
-            return [StaffNote("nothing asked")]
-        asked = question is not None and question.fault == TAKEN_OVER
-        if self.taking_over or asked:
-            self.note("gave back")
-        self.taking_over = False
-        if asked:
-            self.supervision.game.withdraw()
-        return [StaffNote("given back")]
-
-    def _confirm(self, *, yes: bool) -> list[Result]:
-        if not self.autonomy.confirm(yes=yes):
-            return [StaffNote("nothing asked")]
-        return [StaffNote("goes on")] if yes else self._take_over()
 
     def _voided(self, person: str) -> StaffNote:
         if not self._void(person):

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, unaccented
 from tangy_profiles.room import SEAT
-from tangy_tui.app.game_commands import Joins, StaffNote
+from tangy_tui.app.game_commands import Joins
 from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 from tangy_tui.app.register import add_person
 from tangy_tui.app.rooms import check_places
+from tangy_tui.app.staff_notes import StaffNote
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld

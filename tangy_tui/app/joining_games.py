@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from tangy_hw.device_protocols import DeviceError
 from tangy_tui.app.ending_games import EndingGames
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import Joins, StaffNote
+from tangy_tui.app.game_commands import Joins
+from tangy_tui.app.staff_notes import StaffNote
 
 if TYPE_CHECKING:
     from tangy_profiles.past_game import PastGame

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import StaffNote
 from tangy_tui.app.joining_games import JoiningGames
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.staff_view import StaffWatch
 
 

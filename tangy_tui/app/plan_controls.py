@@ -21,9 +21,9 @@ from tangy_tui.app.game_commands import (
     LetWin,
     PlanCommand,
     SetPace,
-    StaffNote,
     TakeBackCall,
 )
+from tangy_tui.app.staff_notes import StaffNote
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision

@@ -17,9 +17,9 @@ from tangy_tui.app.game_commands import (
     CallAgain,
     Drive,
     HasCard,
-    StaffNote,
     Tell,
 )
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.learning.policy import Decision
 
 if TYPE_CHECKING:

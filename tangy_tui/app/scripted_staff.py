@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from tangy_profiles.declared.whom import first_addressee
 from tangy_profiles.past_game import PastGame
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import CallExpert, Clear, EndGame, GoOn, StaffNote
+from tangy_tui.app.game_commands import CallExpert, Clear, EndGame, GoOn
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.supervision import Event, Supervision
 

@@ -15,12 +15,13 @@ from tangy_profiles.game_rules import USUAL_PACE, GamePlan, next_pace
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.room import SEAT
 from tangy_tui.app.chosen_activity import choosable
-from tangy_tui.app.game_commands import Joins, StaffNote
+from tangy_tui.app.game_commands import Joins
 from tangy_tui.app.joining import known_refusal, let_join
 from tangy_tui.app.last_plan import last_plan
 from tangy_tui.app.on_duty import on_duty, take_duty
 from tangy_tui.app.readiness import Readiness
 from tangy_tui.app.rooms import KnownRoom, choose_room, find_room, known_rooms
+from tangy_tui.app.staff_notes import StaffNote
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld

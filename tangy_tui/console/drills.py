@@ -7,7 +7,8 @@ from collections.abc import Callable
 from tangy_profiles.drill_sheet import Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.app.command_grammar import ANSWERS, Leave, read_teaching
+from tangy_tui.app.command_grammar import ANSWERS
+from tangy_tui.app.teaching_grammar import Leave, read_teaching
 from tangy_tui.language.words import words_of
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.monitoring.drill import Drill, Question

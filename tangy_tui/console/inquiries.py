@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
+from tangy_tui.app.command_grammar import ANSWERS, MEANINGS
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS, read_inquiry
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.text.calls import waits_line

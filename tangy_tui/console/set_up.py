@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from time import sleep
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import command_reader, read_inquiry
+from tangy_tui.app.command_grammar import command_reader
 from tangy_tui.app.game_commands import (
     ChangePace,
     ChoosePatterns,
@@ -22,6 +22,7 @@ from tangy_tui.app.game_commands import (
     SetPace,
     StopRobot,
 )
+from tangy_tui.app.inquiry_grammar import read_inquiry
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp

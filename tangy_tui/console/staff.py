@@ -29,13 +29,13 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GoOn,
     Pause,
-    StaffNote,
     StopRobot,
 )
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.app.similar_commands import nearest_commands
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.answering import AnsweredQuestions
 from tangy_tui.console.confirming import ConfirmingStaff
 from tangy_tui.console.freezes import FreezeLines

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from queue import Empty
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.game_commands import EndGame, GameCommand, GoOn, Pause, StaffNote, StopRobot
+from tangy_tui.app.game_commands import EndGame, GameCommand, GoOn, Pause, StopRobot
 from tangy_tui.app.game_controller import ControllerOutput, GameController
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.inputs import ReadAhead, any_waits
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.live_games import ON_FIRST, STOPPED_BEFORE, WAITS_UNTIL_ON

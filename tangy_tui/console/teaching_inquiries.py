@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tangy_tui.app.command_grammar import Inquiry
+from tangy_tui.app.inquiry_grammar import Inquiry
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.coach import coach_words
 from tangy_tui.text.learnt import NOT_SHOWN

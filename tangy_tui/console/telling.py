@@ -5,8 +5,9 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable, Sequence
 
-from tangy_tui.app.game_commands import GameCommand, StaffNote
+from tangy_tui.app.game_commands import GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, ResumedGame, Taught
 from tangy_tui.learning.verification import NotUnderstood, Verification

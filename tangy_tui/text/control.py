@@ -11,8 +11,9 @@ from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
 
 if TYPE_CHECKING:
-    from tangy_tui.app.game_commands import Autonomy, GameCommand, NoteKind, Proposal, StaffNote
+    from tangy_tui.app.game_commands import Autonomy, GameCommand
     from tangy_tui.app.plan_controls import ClaimNow
+    from tangy_tui.app.staff_notes import NoteKind, Proposal, StaffNote
 
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",

@@ -18,9 +18,10 @@ from tangy_profiles.errors import TangyError
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.fault_commands import possible_kinds
-from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, Reached, StaffNote
+from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, Reached
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.fault import (
     OVER,

@@ -11,18 +11,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import (
-    FIXED,
-    MEANINGS,
-    AgainFrom,
-    Leave,
-    Perform,
-    read_answer,
-    read_command,
-    read_inquiry,
-    read_screen,
-    read_teaching,
-)
+from tangy_tui.app.command_grammar import FIXED, MEANINGS, read_answer, read_command
 from tangy_tui.app.game_commands import (
     AUTONOMY,
     DIRECTIONS,
@@ -42,6 +31,8 @@ from tangy_tui.app.game_commands import (
     Tell,
     VoidResponse,
 )
+from tangy_tui.app.inquiry_grammar import read_inquiry
+from tangy_tui.app.teaching_grammar import AgainFrom, Leave, Perform, read_screen, read_teaching
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.learning.verification import Reply, StopCommand
 

@@ -17,12 +17,12 @@ from tangy_tui.app.game_commands import (
     GoOn,
     HasCard,
     Pause,
-    StaffNote,
     StopRobot,
     TakeBackCall,
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.game_view import view_of
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.terminal_session import TerminalSession
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.staff import StaffLines

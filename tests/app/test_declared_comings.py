@@ -12,8 +12,9 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.store import Store
 from tangy_sim.worlds.declared_world import DeclaredWorld
-from tangy_tui.app.game_commands import ComesIn, GoesAway, PlanCommand, SetPace, StaffNote
+from tangy_tui.app.game_commands import ComesIn, GoesAway, PlanCommand, SetPace
 from tangy_tui.app.plan_controls import GamePlanControls
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.interaction.changes import GameChanges
 from tangy_tui.monitoring.supervision import Supervision
 from tests.support.declared import declared

@@ -12,7 +12,8 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import AskFor, ComesIn, GameCommand, GoesAway, StaffNote
+from tangy_tui.app.game_commands import AskFor, ComesIn, GameCommand, GoesAway
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.console.telling import GameTelling

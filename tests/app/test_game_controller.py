@@ -30,13 +30,13 @@ from tangy_tui.app.game_commands import (
     OneStep,
     Pause,
     SetAutonomy,
-    StaffNote,
     StopRobot,
     TakeBackCall,
     TakeOver,
     VoidResponse,
 )
 from tangy_tui.app.game_controller import ControllerOutput, GameController
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy

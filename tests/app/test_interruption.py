@@ -25,14 +25,7 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
-from tangy_tui.app.game_commands import (
-    AskFor,
-    GoesAway,
-    GoOn,
-    HasCard,
-    StopRobot,
-    TakeBackCall,
-)
+from tangy_tui.app.game_commands import AskFor, GoesAway, GoOn, HasCard, StopRobot, TakeBackCall
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import can_join, end_interrupted, find_interrupted, take_up
 from tangy_tui.app.joining import let_join

@@ -27,7 +27,6 @@ from tangy_tui.app.game_commands import (
     Joins,
     SetAutonomy,
     SetPace,
-    StaffNote,
     StopRobot,
 )
 from tangy_tui.app.game_controller import GameController
@@ -35,6 +34,7 @@ from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_u
 from tangy_tui.app.joining import Admission, resume_joined
 from tangy_tui.app.register import guest_ids
 from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.policies import load_policy

@@ -27,11 +27,11 @@ from tangy_tui.app.game_commands import (
     GoesAway,
     LetWin,
     SetPace,
-    StaffNote,
     TakeBackCall,
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.staff_view import StaffWatch
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries

@@ -10,16 +10,8 @@ import pytest
 
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import (
-    REFUSALS,
-    ClaimCard,
-    ComesIn,
-    DoneKind,
-    GoesAway,
-    HasCard,
-    NoteKind,
-    StaffNote,
-)
+from tangy_tui.app.game_commands import ClaimCard, ComesIn, GoesAway, HasCard
+from tangy_tui.app.staff_notes import REFUSALS, DoneKind, NoteKind, StaffNote
 from tangy_tui.app.workspace import Workspace
 from tests.app.test_interruption import Robot
 from tests.app.test_planned_games import Planned

@@ -13,7 +13,7 @@ import pytest
 from tangy_profiles.activity import shipped_activities
 from tangy_profiles.state import ActivityState, Outcome, Progress
 from tangy_profiles.teaching_records import DemonstrationsEdited, Settlement
-from tangy_tui.app.command_grammar import read_settling
+from tangy_tui.app.teaching_grammar import read_settling
 from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.after_teaching import AfterTeaching

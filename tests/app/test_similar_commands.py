@@ -6,7 +6,8 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import GameRules
-from tangy_tui.app.command_grammar import read_command, read_inquiry
+from tangy_tui.app.command_grammar import read_command
+from tangy_tui.app.inquiry_grammar import read_inquiry
 from tangy_tui.app.similar_commands import (
     ABOUT_PERSON,
     COMMANDS,

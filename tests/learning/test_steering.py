@@ -6,8 +6,9 @@ import pytest
 
 from tangy_profiles.activity import load_activity, shipped_activities
 from tangy_profiles.person import load_people
-from tangy_tui.app.command_grammar import read_command, read_teaching
+from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import CallAgain, ChangePace, GoOn, Pause
+from tangy_tui.app.teaching_grammar import read_teaching
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.steering import WAYS, steering_of
 from tangy_tui.learning.teaching_events import Redo, Undo

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.declared.situations import seen_facts
-from tangy_tui.app.command_grammar import read_teaching
+from tangy_tui.app.teaching_grammar import read_teaching
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import learn_policy

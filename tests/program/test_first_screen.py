@@ -62,6 +62,10 @@ def test_home_and_the_name_dialog_load_no_game_grammar(module: str) -> None:
     done = subprocess.run(  # noqa: S603 - our own interpreter
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
-    later = {"tangy_tui.app.command_grammar", "tangy_tui.learning.teaching_events"}
+    later = {
+        "tangy_tui.app.command_grammar",
+        "tangy_tui.app.teaching_grammar",
+        "tangy_tui.learning.teaching_events",
+    }
     assert module in done.stdout.split()
     assert not {*later, *HEAVY} & set(done.stdout.split())

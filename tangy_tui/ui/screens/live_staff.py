@@ -25,10 +25,10 @@ from tangy_tui.app.game_commands import (
     GiveBack,
     GoOn,
     SetAutonomy,
-    StaffNote,
     TakeBackCall,
     TakeOver,
 )
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.learning.verification import Verified
 from tangy_tui.text.control import (
     BUSY,

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StaffNote, StopRobot
+from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StopRobot
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import void_last
 from tangy_tui.interaction.game_events import GameEnded

@@ -11,12 +11,11 @@ from textual.timer import Timer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.room import SEAT
-from tangy_tui.app.command_grammar import Perform, command_reader, read_command, read_screen
+from tangy_tui.app.command_grammar import command_reader, read_command
 from tangy_tui.app.confirmations import Confirmation, needed_confirmation
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.freeze_watch import LOOK_SECONDS, FreezeGuard
 from tangy_tui.app.game_commands import (
-    REFUSALS,
     Accept,
     CallAgain,
     ChangePace,
@@ -29,8 +28,6 @@ from tangy_tui.app.game_commands import (
     GoOn,
     Joins,
     Pause,
-    Proposal,
-    StaffNote,
     StopRobot,
     Tell,
 )
@@ -38,6 +35,8 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.similar_commands import nearest_commands
+from tangy_tui.app.staff_notes import REFUSALS, Proposal, StaffNote
+from tangy_tui.app.teaching_grammar import Perform, read_screen
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of

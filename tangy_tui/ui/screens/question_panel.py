@@ -16,17 +16,18 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
-from tangy_tui.app.command_grammar import Perform, read_command, read_screen
+from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import (
     TAKEN_OVER,
     Accept,
     EndGame,
     GameCommand,
     GiveBack,
-    StaffNote,
     StopRobot,
 )
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.app.teaching_grammar import Perform, read_screen
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook

@@ -15,7 +15,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import Perform, read_settling, read_teaching
+from tangy_tui.app.teaching_grammar import Perform, read_settling, read_teaching
 from tangy_tui.app.tour import Tour
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.teaching_events import (

@@ -1,0 +1,171 @@
+"""The grammar of typed commands while teaching, and of those that screens carry out like keys.
+
+The parsers return `None` for words that are no command, as those of `command_grammar` do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from tangy_tui.app.command_grammar import LEAVING, LONGEST_NUMBER
+from tangy_tui.app.inquiry_grammar import Inquiry, read_inquiry
+from tangy_tui.app.keymap import ACTIONS
+from tangy_tui.language.steering import WHILE_TEACHING, steering_of
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.learning.remarks import answers_to
+from tangy_tui.learning.teaching_events import (
+    Discard,
+    Finish,
+    Next,
+    Redo,
+    Remark,
+    RemarkAnswer,
+    SameWhatever,
+    Settle,
+    Undo,
+)
+from tangy_tui.learning.verification import StopCommand
+
+
+@dataclass(frozen=True, slots=True)
+class Leave:
+    """Leave; confirmed steps are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class AgainFrom:
+    """Demonstrate the present game again from a step, counted from 1; None: no step was given."""
+
+    step: int | None
+
+
+_WHATEVER = re.compile(r"(?:always )?(?:it is |do |that is )?the same whatever(.*)")
+
+
+@dataclass(frozen=True, slots=True)
+class Perform:
+    """Run an action of the keymap; `on` is the wanted state of a switch if the words name it."""
+
+    action: str
+    on: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TeachAs:
+    """The teacher's name."""
+
+    name: str
+
+
+TeachingWord: TypeAlias = (
+    Undo
+    | SameWhatever
+    | Redo
+    | Next
+    | Discard
+    | Finish
+    | AgainFrom
+    | Leave
+    | StopCommand
+    | TeachAs
+    | Perform
+    | Inquiry
+)
+
+TEACHING: dict[str, TeachingWord] = {
+    **dict.fromkeys(("undo", "take that back"), Undo()),
+    "redo": Redo(),
+    **dict.fromkeys(("next", "next game", "new game", "another game"), Next()),
+    **dict.fromkeys(
+        ("discard the game", "discard game", "discard this game", "throw the game away"), Discard()
+    ),
+    **dict.fromkeys(("finish the demonstration", "finish here", "that is all"), Finish()),
+    **dict.fromkeys(("start over", "begin again", "begin anew", "start again"), AgainFrom(1)),
+    **dict.fromkeys(("shown", "seen"), "shown"),
+    **dict.fromkeys(("voice on", "speak"), Perform("voice", on=True)),
+    **dict.fromkeys(("voice off", "be quiet"), Perform("voice", on=False)),
+    **dict.fromkeys(("pause listening", "stop listening"), Perform("listen", on=False)),
+    **dict.fromkeys(("listen", "listen again"), Perform("listen", on=True)),
+    "guided game": Perform("guided"),
+    **dict.fromkeys(("rule", "make it a rule", "make a rule"), Perform("rule")),
+    **dict.fromkeys(("play", "play a game", "let tangy play"), Perform("begin")),
+    **dict.fromkeys(("my name", "change my name", "who am i"), Perform("name")),
+}
+"""Commands while teaching, besides the word of every action of the keymap."""
+
+PERFORMED = frozenset(
+    {
+        *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
+        *("learn", "library", "guided", "filter", "quit", "name", "messages"),
+    }
+)
+"""Actions of the keymap whose typed words work on the teaching screen as their keys do elsewhere.
+"""
+
+_AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
+_CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
+
+
+def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
+    """Parse words as a command of teaching; None if they are none."""
+    words = " ".join(text.split()).casefold()
+    if words == "stop" or stops(text, game):
+        return StopCommand(text)
+    if called := _CALLED.fullmatch(" ".join(text.split()).rstrip(".!")):
+        return TeachAs(called[1])
+    if rule := _WHATEVER.fullmatch(words):
+        return SameWhatever(_named_facts(rule[1]))
+    if again := _AGAIN.fullmatch(words):
+        number = again[1]
+        return AgainFrom(int(number) if number and number.isdecimal() else None)
+    if (way := steering_of(text)) in WHILE_TEACHING:
+        words = str(way)
+    if words in TEACHING:
+        return TEACHING[words]
+    return Leave() if words in LEAVING else read_program(words)
+
+
+def _named_facts(words: str) -> tuple[str, ...]:
+    """Return the facts that words name: "the clock and hinted are"."""
+    kept = re.sub(r"\b(?:is|are|the|happens|comes)\b", " ", words)
+    return tuple(" ".join(one.split()) for one in re.split(r",| and | or ", kept) if one.strip())
+
+
+def read_program(text: str) -> Perform | Inquiry | None:
+    """Parse words as a command or question to the program itself; None if they are neither."""
+    words = " ".join(text.split()).casefold()
+    if isinstance(word := TEACHING.get(words), Perform):
+        return word
+    action = next((a.id for a in ACTIONS if a.id in PERFORMED and a.word == words), None)
+    return Perform(action) if action is not None else read_inquiry(text)
+
+
+def read_screen(text: str) -> Perform | None:
+    """Parse words as a command that a screen carries out like a key."""
+    word = read_program(text)
+    if isinstance(word, str):
+        return Perform(word) if word in ("why", "help", "phrases") else None
+    return word
+
+
+SETTLING: dict[str, RemarkAnswer] = {
+    "this": "this",
+    "earlier": "earlier",
+    "both": "both",
+    **dict.fromkeys(("keep", "keep it", "y", "yes"), "keep"),
+    **dict.fromkeys(("later", "decide later", "n", "no"), "later"),
+}
+"""Words that answer a remark, besides the numbers."""
+
+
+def read_settling(text: str, remark: Remark) -> Settle | None:
+    """Parse words as an answer to a remark; None if they are none of its answers."""
+    words, answers = text.strip().casefold(), answers_to(remark)
+    if words.isdecimal() and words.isascii() and len(words) <= LONGEST_NUMBER:
+        number = int(words)
+        return Settle(answers[number - 1]) if 1 <= number <= len(answers) else None
+    answer = SETTLING.get(words)
+    return Settle(answer) if answer == "later" or answer in answers else None
