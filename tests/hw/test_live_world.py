@@ -135,6 +135,26 @@ def test_a_held_count_down_goes_on_where_it_was(link: FakeLink) -> None:
     assert world.calls_in == pytest.approx(before - 5.0)
 
 
+def test_a_hold_during_a_call_does_not_lengthen_the_count_down(link: FakeLink) -> None:
+    world = opened(world_of(link, pace=20.0))
+    asked_at: list[float] = []
+
+    def staff_ask(did: str, time: float) -> None:
+        if did == "perform" and not asked_at:  # while the number is being said
+            asked_at.append(time)
+            world.hold_calls(held=True)
+            link.time += 8.0
+
+    link.meanwhile = staff_ask
+    do(world, "call number")
+    assert asked_at
+    count_down = world.calls_in
+    link.time += 60.0
+    world.hold_calls(held=False)
+    assert world.calls_in == pytest.approx(count_down)
+    assert count_down <= 20.0
+
+
 def test_a_number_is_being_called_until_it_counts(world: LiveWorld, link: FakeLink) -> None:
     seen: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
     link.meanwhile = lambda do, time: seen.append((world.calling, world.called_now))

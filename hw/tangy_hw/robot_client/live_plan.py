@@ -204,6 +204,12 @@ class LivePlan(PlannedGame):
             self._due += self.link.time - self._held_since
             self._held_since = None
 
+    def _count_down(self) -> None:
+        """Count down to the next call from now, also while staff hold the count-down."""
+        self._due = self.link.time + self.pace
+        if self._held_since is not None:
+            self._held_since = self.link.time
+
     def set_pace(self, seconds: float) -> None:
         """Set the s between calls, also for the next call."""
         self._due += seconds - self.pace

@@ -224,7 +224,7 @@ class LiveWorld(LivePlan):
         match behaviour.effect:
             case "draw":
                 self.calls.count(numbers)
-                self._due = self.link.time + self.pace
+                self._count_down()
                 with suppress(Preempted):  # it counts as called, whatever happens now
                     self.commands.wait(min(self.pace, LOOK_SECONDS), asks=True)
             case "go to user":
