@@ -12,6 +12,7 @@ AGAIN_SOON = "Push again in a moment."
 ANSWERS_NEED_SCREEN = "--mic: Tangy listens to answers on the screen; here they are typed."
 LISTENING_NEEDS_SCREEN = "--mic: Tangy listens in a live game on the screen; there is none here."
 NOTHING_ASKED = "I heard yes or no, but there is no question."
+SAID_TOO_EARLY = "You said that before the question was on the screen."
 
 
 def hearing_words(note: HearingNote) -> str:

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from tangy_tui.learning.explanation import DecisionReasons
     from tangy_tui.learning.verification import Asked, Offered
 
-SAID_TOO_EARLY = "You said that before the question was on the screen."
 TOO_EARLY = "Too early: please answer again."
 DID_YOU_SAY = "Did you say: "
 NO_QUESTION = "There is no question open: give a command."

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.text.times import local_time
-from tangy_tui.text.watching import WORLDS
+from tangy_tui.text.worlds import WORLDS
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.games import Game

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
+from tangy_profiles.game_world import BENCH, LIVE
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.faults import status_words
@@ -19,14 +19,7 @@ from tangy_tui.text.staff_view import (
     time_words,
 )
 from tangy_tui.text.times import local_now
-
-WORLDS: dict[GameWorld, str] = {
-    UNKNOWN: "world unknown",
-    SIMULATED: "simulated",
-    BENCH: "on the bench",
-    LIVE: "live, with the robot",
-}
-"""The worlds of games, on screens and pages."""
+from tangy_tui.text.worlds import WORLDS
 
 PHASES: dict[Phase, str] = {
     "idle": "no game",

@@ -13,9 +13,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.text.hearing import NOTHING_ASKED, hearing_words
+from tangy_tui.text.hearing import NOTHING_ASKED, SAID_TOO_EARLY, hearing_words
 from tangy_tui.text.keys import with_keys
-from tangy_tui.text.questions import SAID_TOO_EARLY
 from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import keymap_of

@@ -30,7 +30,8 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.text.control import autonomy_words
 from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.staff_view import clock_words, lasting_words, person_words, time_words
-from tangy_tui.text.watching import CLOSED, GONE, NO_GAME, PHASES, WORLDS, robot_words
+from tangy_tui.text.watching import CLOSED, GONE, NO_GAME, PHASES, robot_words
+from tangy_tui.text.worlds import WORLDS
 from tangy_tui.ui.screens.watch import WatchScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView

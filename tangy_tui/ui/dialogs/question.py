@@ -14,12 +14,12 @@ from textual.content import Content
 from textual.widgets import Static
 
 from tangy_tui.learning.verification import Asked, Offered, Reply
+from tangy_tui.text.hearing import SAID_TOO_EARLY
 from tangy_tui.text.questions import (
     DID_YOU_MEAN,
     DID_YOU_SAY,
     NUMBER_OR_NONE,
     OR_DID_YOU_MEAN,
-    SAID_TOO_EARLY,
     TOO_EARLY,
     YES_OR_NO,
     yes_words,

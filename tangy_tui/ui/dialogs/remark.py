@@ -16,7 +16,8 @@ from tangy_tui.app.spoken_answers import answer_by_yes_or_no
 from tangy_tui.learning.remarks import answers_to
 from tangy_tui.learning.teaching_events import Remark, RemarkAnswer
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.text.questions import SAID_TOO_EARLY, TOO_EARLY
+from tangy_tui.text.hearing import SAID_TOO_EARLY
+from tangy_tui.text.questions import TOO_EARLY
 from tangy_tui.text.remarks import (
     LEARN_LATER,
     NUMBER_OR_ESC,
