@@ -23,13 +23,6 @@ class TakenUp:
     waiting: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class GameToPlay:
-    """The game to play: an interrupted one to resume, or (None) a new one."""
-
-    past: PastGame | None
-
-
 def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
     """Return the game of the workspace's activity that was interrupted in a world, if one was."""
     past = interrupted_game(workspace.store, workspace.activity.name)

@@ -1,13 +1,15 @@
-"""What staff chose for their last game, to offer it for the next one."""
+"""What staff chose for their last game, and who sat where, to offer it for the next one."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 from tangy_profiles.game_records import GameBeginning, GameChange
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import BENCH, LIVE
+from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 
 SAME_DAY = timedelta(hours=8)
@@ -41,3 +43,28 @@ def last_plan(store: Store, activity: str, now: datetime | None = None) -> GameP
     began = datetime.fromisoformat(begun[-1].at)
     recent = (now or datetime.now(UTC)) - began <= SAME_DAY
     return replace(plan, absent=tuple(sorted(away)) if recent else ())
+
+
+def seated_as_before(store: Store, people: Iterable[str]) -> list[str]:
+    """Sort people (ids) as they sat in the last game with people or on the bench.
+
+    People who came during it have the places that staff gave them, also if it was interrupted
+    before it went on with them. People who were not in it come after the others.
+    """
+    games = [event.record for event in store.events(GameBeginning)]
+    last = next((game for game in reversed(games) if game.world in (BENCH, LIVE)), None)
+    sat = [] if last is None else list(last.people)
+    game = "" if last is None else last.game
+    for event in store.events(GameChange, StaffAction):
+        place: int | None = None
+        match event.record:
+            case GameChange(what="joined", person=person, place=place) as new:
+                pass
+            case StaffAction(did="came", person=person, seat=seat) as new if seat:
+                place = seat - 1
+            case _:
+                continue
+        if new.game == game and person not in sat:
+            sat.insert(len(sat) if place is None else place, person)
+    before = {person: place for place, person in enumerate(sat)}
+    return sorted(people, key=lambda person: before.get(person, len(before)))

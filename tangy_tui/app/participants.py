@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity
 from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import GameBeginning, GameChange
-from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, load_people, unaccented
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room, room_for
-from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
 from tangy_tui.app.register import known_people, participants
@@ -78,32 +75,6 @@ class Participants:
         """Seat people in the order of these ids."""
         self._sample = tuple(sorted(self._sample, key=lambda person: order.index(person.id)))
         self.read_people()
-
-    @property
-    def seats_before(self) -> list[str]:
-        """The ids of the people in the order of the last game with people or on the bench.
-
-        People who came during it have the places that staff gave them, also if it was interrupted
-        before it went on with them. People who were not in it come after the others.
-        """
-        games = [event.record for event in self.store.events(GameBeginning)]
-        last = next((game for game in reversed(games) if game.world in (BENCH, LIVE)), None)
-        sat = [] if last is None else list(last.people)
-        game = "" if last is None else last.game
-        for event in self.store.events(GameChange, StaffAction):
-            place: int | None = None
-            match event.record:
-                case GameChange(what="joined", person=person, place=place) as new:
-                    pass
-                case StaffAction(did="came", person=person, seat=seat) as new if seat:
-                    place = seat - 1
-                case _:
-                    continue
-            if new.game == game and person not in sat:
-                sat.insert(len(sat) if place is None else place, person)
-        before = {person: place for place, person in enumerate(sat)}
-        there = [person.id for person in self.people]
-        return sorted(there, key=lambda person: before.get(person, len(before)))
 
     def gather(self, ids: Sequence[str]) -> None:
         """Make exactly these people the participants, in this order."""

@@ -17,7 +17,7 @@ from tangy_profiles.room import SEAT
 from tangy_tui.app.chosen_activity import choosable
 from tangy_tui.app.game_commands import Joins
 from tangy_tui.app.joining import known_refusal, let_join
-from tangy_tui.app.last_plan import last_plan
+from tangy_tui.app.last_plan import last_plan, seated_as_before
 from tangy_tui.app.on_duty import on_duty, take_duty
 from tangy_tui.app.readiness import Readiness
 from tangy_tui.app.rooms import KnownRoom, choose_room, find_room, known_rooms
@@ -205,9 +205,10 @@ class SetUp(Readiness):
     def _seat_as_before(self) -> None:
         """Seat people as chosen here, or as in the last game with people or on the bench."""
         place = {person: number for number, person in enumerate(self._order)}
-        usual = self.workspace.seats_before
+        there = [person.id for person in self.workspace.people]
+        usual = seated_as_before(self.workspace.store, there)
         self.seats = sorted(usual, key=lambda person: place.get(person, len(place)))
-        if self.seats != [person.id for person in self.workspace.people]:
+        if self.seats != there:
             self.workspace.seat(self.seats)
 
     def rooms(self) -> list[KnownRoom]:

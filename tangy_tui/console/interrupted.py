@@ -8,7 +8,8 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.past_game import PastGame
 from tangy_tui.app.command_grammar import LEAVING, command_reader
 from tangy_tui.app.game_commands import EndGame, GoOn, Joins
-from tangy_tui.app.interruption import GameToPlay, can_join, end_interrupted, take_up
+from tangy_tui.app.game_to_play import GameToPlay
+from tangy_tui.app.interruption import can_join, end_interrupted, take_up
 from tangy_tui.app.joining import known_refusal, let_join
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text import interruptions as text

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.interruption import GameToPlay
+from tangy_tui.app.game_to_play import GameToPlay
 from tangy_tui.text import interruptions as text
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.interruption import GameToPlay
+from tangy_tui.app.game_to_play import GameToPlay
 from tangy_tui.text import program as text
 from tangy_tui.text.program import NOT_POSSIBLE, NOT_YET
 from tangy_tui.text.rooms import no_chosen_room

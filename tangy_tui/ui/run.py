@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.game_world import PLAYED_WORLDS, SIMULATED
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.app.interruption import GameToPlay, find_interrupted
+from tangy_tui.app.game_to_play import GameToPlay
 from tangy_tui.app.teacher_profile import change_theme, read_profile
 from tangy_tui.app.user_settings import read_settings
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.monitoring.games import read_games
 from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.live_games import played_lines, report_words
 from tangy_tui.ui.app import run_app
@@ -206,6 +205,9 @@ def _tell_played(
     Games that ended before the program `begun` are not told; games that were interrupted before
     it are, if `earlier`.
     """
+    from tangy_tui.app.interruption import find_interrupted
+    from tangy_tui.monitoring.games import read_games
+
     *told, command = played_lines(read_games(workspace.store), begun, report) or [""]
     for world in worlds:
         past = find_interrupted(workspace, world)

@@ -10,7 +10,8 @@ import pytest
 from tangy_profiles.game_records import GameEnding
 from tangy_profiles.game_world import LIVE
 from tangy_profiles.past_game import PastGame
-from tangy_tui.app.interruption import GameToPlay, find_interrupted
+from tangy_tui.app.game_to_play import GameToPlay
+from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.interrupted import ask_about_interrupted
 from tests.app.test_joining import LiveGame

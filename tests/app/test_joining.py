@@ -32,6 +32,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import end_interrupted, find_interrupted, take_up
 from tangy_tui.app.joining import Admission, resume_joined
+from tangy_tui.app.last_plan import seated_as_before
 from tangy_tui.app.register import guest_ids
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.staff_notes import StaffNote
@@ -48,6 +49,11 @@ from tangy_tui.text.log import session_lines
 from tests.hw.links import FakeLink, LaidCard
 
 SEED = 31
+
+
+def seats_before(workspace: Workspace) -> list[str]:
+    """Return the ids of the participants in the order of the last game."""
+    return seated_as_before(workspace.store, [person.id for person in workspace.people])
 
 
 class LiveGame:
@@ -237,7 +243,7 @@ def test_a_person_who_joined_sits_there_in_the_next_set_up(taught: Path) -> None
     sat = [person.id for person in workspace.people]
     assert 0 < sat.index(new) < len(sat) - 1
     workspace.gather(sorted(sat))
-    assert workspace.seats_before == sat
+    assert seats_before(workspace) == sat
     workspace.close()
 
 
@@ -259,7 +265,7 @@ def test_staff_say_where_a_person_who_joins_sits(taught: Path) -> None:
     workspace = Workspace(taught)
     past = find_interrupted(workspace, LIVE)
     assert past is not None and past.beginning.people == sat
-    assert tuple(workspace.seats_before) == sat
+    assert tuple(seats_before(workspace)) == sat
     workspace.close()
 
 
@@ -278,11 +284,11 @@ def test_a_new_person_keeps_the_seat_if_the_game_is_discarded_before_it_goes_on(
     assert past is not None
     end_interrupted(workspace, past, "discarded")
     sat = ["user6", "user1", "user5", "user2", "user3", "user4"]
-    assert workspace.seats_before == sat
+    assert seats_before(workspace) == sat
     setup = SetUp.of(workspace)
     assert setup.seats == sat
     LiveGame(workspace)  # another game, in which they did not join
-    assert workspace.seats_before == [person.id for person in workspace.people]
+    assert seats_before(workspace) == [person.id for person in workspace.people]
     workspace.close()
 
 

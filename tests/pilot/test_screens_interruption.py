@@ -8,7 +8,7 @@ import pytest
 
 from tangy_profiles.game_records import GameBeginning, GameEnding
 from tangy_profiles.game_world import LIVE
-from tangy_tui.app.interruption import GameToPlay
+from tangy_tui.app.game_to_play import GameToPlay
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
