@@ -43,6 +43,11 @@ class JoiningGames(EndingGames):
     _admitted = False
     """Whether the robot is being set up for those who have joined."""
 
+    @property
+    def after_joining(self) -> bool:
+        """Whether the game to resume was interrupted only because a person joined."""
+        return self._interrupted_at is not None
+
     def _let_join(self, command: Joins) -> list[Result]:
         """Send the robot to the front, let a person in, and interrupt the game."""
         if self.admission is None:

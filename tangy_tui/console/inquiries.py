@@ -8,10 +8,12 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS, read_inquiry
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, proposal_words
-from tangy_tui.text.faults import HALTED, advice_lines, list_lines
+from tangy_tui.text.earlier import earlier_fault_lines, earlier_lines
+from tangy_tui.text.faults import HALTED, advice_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.messages import ABOVE
 from tangy_tui.text.questions import NO_QUESTION, answer_help
@@ -33,10 +35,21 @@ class Inquiries:
     """Answers typed questions about the game."""
 
     def __init__(
-        self, controller: GameController, name: Name, demonstrations: Demonstrations | None
+        self,
+        controller: GameController,
+        name: Name,
+        demonstrations: Demonstrations | None,
+        earlier: EarlierPart | None = None,
     ) -> None:
-        """Answer about the games of a controller; `demonstrations` serve to explain decisions."""
-        self._controller = controller
+        """Answer about the games of a controller.
+
+        Args:
+            controller: runs the games.
+            name: returns a person's name for an id.
+            demonstrations: explain decisions.
+            earlier: what happened before the first game was interrupted.
+        """
+        self._controller, self._earlier = controller, earlier
         self._game = controller.supervision
         self._name, self._demonstrations = name, demonstrations
 
@@ -52,7 +65,7 @@ class Inquiries:
             case "what to do":
                 return advice_lines(self._game) or [NOTHING_WRONG]
             case "faults":
-                return list_lines(self._game.faults)
+                return earlier_fault_lines(self._before, self._game.faults)
             case "patterns":
                 return [patterns_line(self._game.world)]
         if word in WHO_IS_HERE:
@@ -61,12 +74,19 @@ class Inquiries:
         if word in WHOSE_CARDS:
             return [cards_line(self._game.world, self._name)]
         if word == BY_ID["messages"].word:
-            return [ABOVE]
+            told = self._earlier
+            activity = self._game.world.activity
+            return [*(earlier_lines(told, activity, self._name) if told else ()), ABOVE]
         if word in ANSWERS:
             return [NO_QUESTION]
         if word in ("undo", "redo"):
             return [nothing_to(word)]
         return None
+
+    @property
+    def _before(self) -> EarlierPart | None:
+        """What happened before the present game was interrupted."""
+        return self._earlier if self._game.games <= 1 else None
 
     def waits_for(self, key: str = "Y") -> str:
         """Tell what Tangy waits for; "" if it does not wait; `key` says yes to a proposal."""

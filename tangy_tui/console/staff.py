@@ -46,11 +46,8 @@ from tangy_tui.console.script_waits import ScriptWaits
 from tangy_tui.console.telling import GameTelling
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.language.stop_sentence import prepare
-from tangy_tui.learning.verification import (
-    Reply,
-    Say,
-    Verified,
-)
+from tangy_tui.learning.verification import Reply, Say, Verified
+from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
 from tangy_tui.text.calls import expert_line
@@ -82,6 +79,7 @@ class StaffLines:
         before: StaffLines | None = None,
         ahead: ReadAhead | None = None,
         watch: FreezeWatch | None = None,
+        earlier: EarlierPart | None = None,
     ) -> None:
         """Connect staff to games.
 
@@ -98,6 +96,7 @@ class StaffLines:
             before: the games that a person has joined.
             ahead: the lines, if they are being read already; then `read` is not called.
             watch: detects that the program was frozen.
+            earlier: what happened before the first game was interrupted.
         """
         self._controller, self._name = controller, name
         self._game = controller.supervision
@@ -109,7 +108,7 @@ class StaffLines:
         self._sure = ConfirmingStaff(controller, name, self._yes, telling.write)
         self._freezes = FreezeLines(controller, self._sure, telling.write, watch)
         self._waits = ScriptWaits(controller, self._tell_progress)
-        self._inquiries = Inquiries(controller, name, demonstrations)
+        self._inquiries = Inquiries(controller, name, demonstrations, earlier)
         self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, telling.write)
         telling.verify = lambda said: self._questions.verify(said, self._typed)
         self._ahead = ReadAhead(read) if ahead is None else ahead

@@ -79,7 +79,7 @@ def moment_lines(
 ) -> Iterator[str]:
     """Describe one moment of a game, with the time in the game if `timed`, and local time."""
     when = _when(moment, timed)
-    first, *more = _moment_lines(moment, activity, name)
+    first, *more = told_lines(moment, activity, name)
     yield f"{when}  {first}"
     for line in more:
         yield f"{' ' * len(when)}  {line}"
@@ -90,7 +90,8 @@ def _when(moment: Moment, timed: bool) -> str:
     return f"{clock(moment.seconds):>7} {at}" if timed else at
 
 
-def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list[str]:
+def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[str]:
+    """Describe one moment of a game without its time; what is not indented has a mark."""
     match moment.what:
         case Done() as done:
             return _done_lines(done, activity, name)

@@ -10,6 +10,7 @@ KEYS = "up down more   esc closes"
 ABOVE = "Everything that Tangy told you is in the lines above: scroll up to read it again."
 HELP = (
     "What Tangy told you since the program began, the newest message first, with the time of day. "
+    "If you went on with a game that was interrupted, what its log has from before is below. "
     "Up and down scroll."
 )
 

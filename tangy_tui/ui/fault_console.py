@@ -23,15 +23,12 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.monitoring.fault import (
-    OVER,
-    Diagnosed,
-    Fault,
-    Moved,
-)
+from tangy_tui.monitoring.earlier import EarlierPart
+from tangy_tui.monitoring.fault import OVER, Diagnosed, Fault, Moved
 from tangy_tui.monitoring.games import record_all_well, uncleared
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import injections
+from tangy_tui.text.earlier import before_words
 from tangy_tui.text.faults import (
     banner_words,
     doing_words,
@@ -89,6 +86,8 @@ class FaultConsole:
         self.supervision = control.supervision
         self.ticks = 0
         """The number of polls so far."""
+        self.earlier: EarlierPart | None = None
+        """What happened in the first game before it was interrupted."""
         self.beside: Beside | None = None
         """Runs commands that take time in a live world; None in a simulated one."""
         self._screen = screen
@@ -184,10 +183,19 @@ class FaultConsole:
         else:
             banner.show(())
         faults = screen.query_one(FaultList)
-        faults.fill([*map(self.staged.as_shown, supervision.faults)])
-        faults.set_class(any(not fault.asks_only for fault in supervision.faults), "-there")
+        part = self._before
+        earlier = () if part is None else part.faults
+        heading = "" if part is None or part.joined else before_words(part.at)
+        faults.fill([*map(self.staged.as_shown, supervision.faults)], earlier, heading)
+        there = any(not fault.asks_only for fault in (*earlier, *supervision.faults))
+        faults.set_class(there, "-there")
         if self._dialog is not None:
             self._dialog.show(screen.query_one(StatusLine).status)
+
+    @property
+    def _before(self) -> EarlierPart | None:
+        """What happened before the present game was interrupted."""
+        return self.earlier if self.supervision.games <= 1 else None
 
     @property
     def told(self) -> list[Fault]:
@@ -212,7 +220,8 @@ class FaultConsole:
 
     def dialog(self, id: str) -> FaultDialog | None:
         """Return the dialog with all about a fault; None if there is no such fault."""
-        fault = next((f for f in self.supervision.faults if f.id == id), None)
+        earlier = () if self._before is None else self._before.faults
+        fault = next((f for f in (*self.supervision.faults, *earlier) if f.id == id), None)
         if fault is None:
             return None
         game = self.supervision

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -32,6 +33,8 @@ class MessageHistoryApp(App[None]):
         super().__init__(**settings)
         self.told: deque[tuple[datetime, str]] = deque(maxlen=MOST)
         """The last messages, with the local time at which each was shown."""
+        self.told_before: tuple[str, Sequence[tuple[datetime, str]]] = "", ()
+        """A heading, and the messages before an interruption, with their local times."""
 
     def remember(self, sentence: str) -> None:
         """Keep a sentence that was told."""
@@ -60,7 +63,14 @@ class MessageHistoryApp(App[None]):
         """List the last messages."""
         from tangy_tui.ui.dialogs.messages import MessagesDialog
 
-        self.push_screen(MessagesDialog(tuple(self.told)))
+        heading, before = self.told_before
+        self.push_screen(MessagesDialog(tuple(self.told), heading, before))
+
+
+def remember_before(app: object, heading: str, told: Sequence[tuple[datetime, str]]) -> None:
+    """Let Tangy's application keep the messages before an interruption, as the log has them."""
+    if isinstance(app, MessageHistoryApp):
+        app.told_before = heading, [(at, clean(words)) for at, words in told][-MOST:]
 
 
 def remember(app: object, sentence: str) -> None:

@@ -79,7 +79,9 @@ class FaultDialog(Dialog[None]):
         kind = f"{kind_words(fault)}, after step {fault.step}; {state_words(fault)}"
         lines += paragraph(kind, width, "dim")
         lines += heading(DONE_WHEN) + timeline(fault, width)
-        if pieces := evidence_of(fault, self._book, self._robot, self._label):
+        known = any(rule.code == fault.code for rule in self._book.rules)  # the log may be older
+        pieces = evidence_of(fault, self._book, self._robot, self._label) if known else []
+        if pieces:
             lines += heading(HOW_KNOWN) + evidence_lines(pieces, width)
         return lines + heading(WHAT_TO_DO) + advice_lines(fault.advice, width)
 

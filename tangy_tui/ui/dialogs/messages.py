@@ -13,7 +13,7 @@ from textual.content import Content
 
 from tangy_tui.text import messages as text
 from tangy_tui.ui.base import Dialog
-from tangy_tui.ui.widgets.page import Page, PageLine, paragraph
+from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 
 
 class MessagesDialog(Dialog[None]):
@@ -28,10 +28,22 @@ class MessagesDialog(Dialog[None]):
     ]
     HELP = text.HELP
 
-    def __init__(self, told: Sequence[tuple[datetime, str]]) -> None:
-        """Create the dialog; `told` are the messages with their times, the oldest first."""
+    def __init__(
+        self,
+        told: Sequence[tuple[datetime, str]],
+        heading: str = "",
+        before: Sequence[tuple[datetime, str]] = (),
+    ) -> None:
+        """Create the dialog.
+
+        Args:
+            told: the messages with their times, the oldest first.
+            heading: the heading above the messages before an interruption.
+            before: these messages.
+        """
         super().__init__(None)
         self._told = tuple(reversed(told))
+        self._heading, self._before = heading, tuple(reversed(before))
 
     def compose(self) -> ComposeResult:
         """Lay out the page."""
@@ -52,4 +64,8 @@ class MessagesDialog(Dialog[None]):
         lines: list[PageLine] = []
         for at, words in self._told:
             lines += paragraph(text.told_words(at, words), width)
+        if self._before:
+            lines += heading(self._heading) if lines else heading(self._heading)[1:]
+        for at, words in self._before:
+            lines += paragraph(text.told_words(at, words), width, "dim")
         return lines or paragraph(text.NONE_YET, width)

@@ -16,8 +16,10 @@ from tangy_profiles.present_moment import as_present
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.earlier import read_earlier
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text.earlier import before_words, earlier_messages
 from tangy_tui.text.games import (
     ANSWER_FIRST,
     LEAVE_DETAIL,
@@ -37,7 +39,7 @@ from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.keys import keymap_of
-from tangy_tui.ui.message_history import remember
+from tangy_tui.ui.message_history import remember, remember_before
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.play_keys import keys
 from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view
@@ -81,6 +83,18 @@ class PlayPanels(TangyScreen[Tally]):
         self.picture = GamePicture(self, workspace, control.supervision)
         self.picture.scene = lambda: control.plan.scene
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
+
+    def on_mount(self) -> None:
+        """Show what the log has of a game before it was interrupted."""
+        control, workspace = self.control, self._workspace
+        if (past := control.past) is None:
+            return
+        activity, joined = workspace.activity, control.after_joining
+        part = read_earlier(workspace.store, past, activity, workspace.names, joined=joined)
+        self._faults.earlier = part
+        if not joined:
+            told = earlier_messages(part, activity, workspace.name)
+            remember_before(self.app, before_words(part.at), told)
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; a dialog tells why a game stopped, unless that is `known`."""

@@ -9,6 +9,7 @@ from rich.cells import cell_len
 from textual.message import Message
 
 from tangy_tui.monitoring.fault import OPEN, Fault
+from tangy_tui.text.earlier import NONE_SINCE, WAS_OPEN
 from tangy_tui.text.fault_views import LIST_HELP, NO_FAULTS, NONE_FOUND
 from tangy_tui.text.faults import (
     Name,
@@ -56,10 +57,18 @@ class FaultList(ChoiceList):
         )
         self._person_name = name
         self._faults: tuple[Fault, ...] = ()
+        self._earlier: tuple[Fault, ...] = ()
+        self._heading = ""
 
-    def fill(self, faults: Sequence[Fault]) -> None:
-        """Show these faults."""
-        self._faults = tuple(faults)
+    def fill(
+        self, faults: Sequence[Fault], earlier: Sequence[Fault] = (), heading: str = ""
+    ) -> None:
+        """Show these faults; below them, and a heading, those before an interruption."""
+        if heading:
+            self._faults, self._earlier = tuple(faults), tuple(earlier)
+        else:
+            self._faults, self._earlier = (*earlier, *faults), ()
+        self._heading = heading
         self._write_all()
 
     def _filter_changed(self) -> None:
@@ -69,18 +78,28 @@ class FaultList(ChoiceList):
         return lines  # already filtered, also by text that is not shown
 
     def _hint(self) -> str:
-        return HINT if self._faults else ""
+        return HINT if self._faults or self._earlier else ""
 
     def _write_all(self) -> None:
-        kept = tuple(f for f in self._faults if self._has(searched(f, self._person_name)))
+        kept, before = self._found(self._faults), self._found(self._earlier)
         none = NONE_FOUND if self._faults else NO_FAULTS
-        self.show(lambda width, height: fault_list_lines(kept, width, none))
+
+        def lines(width: int, height: int) -> list[ChoiceLine]:
+            if not before:
+                return fault_list_lines(kept, width, NONE_FOUND if self._earlier else none)
+            now = [] if self.filter and not kept else fault_list_lines(kept, width, NONE_SINCE)
+            heading = ChoiceLine(((shorten(self._heading, width), "robot"),))
+            return [*now, heading, *fault_list_lines(before, width, none, then=True)]
+
+        self.show(lines)
         self._say_filter()
 
+    def _found(self, faults: Sequence[Fault]) -> tuple[Fault, ...]:
+        return tuple(f for f in faults if self._has(searched(f, self._person_name)))
+
     def _say_filter(self, count: str = "") -> None:
-        words = self.filter.split()
-        left = sum(self._has(searched(f, self._person_name)) for f in self._faults)
-        super()._say_filter(f"{left} of {len(self._faults)}" if words else "")
+        words, faults = self.filter.split(), (*self._faults, *self._earlier)
+        super()._say_filter(f"{len(self._found(faults))} of {len(faults)}" if words else "")
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Chosen(self, str(self.shown_keys[index])))
@@ -117,20 +136,24 @@ def columns_for(width: int, name: int) -> Columns:
     return Columns(TIME, 0, name, SHORT_STATE, 0)
 
 
-def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[ChoiceLine]:
-    """Format the list for a width in cells."""
+def fault_list_lines(
+    faults: Sequence[Fault], width: int, none: str, *, then: bool = False
+) -> list[ChoiceLine]:
+    """Format the list for a width in cells; `then`: as it was before an interruption."""
     if not faults:
         return [ChoiceLine(((none, "dim"),))]
     columns = columns_for(width, max(cell_len(clean(fault.name)) for fault in faults))
-    return [ChoiceLine(_row(fault, columns), fault.id) for fault in faults]
+    return [ChoiceLine(_row(fault, columns, then=then), fault.id) for fault in faults]
 
 
-def _row(fault: Fault, columns: Columns) -> Row:
-    there = fault.status == OPEN
+def _row(fault: Fault, columns: Columns, *, then: bool) -> Row:
+    there = fault.status == OPEN and not then
     ink = "bad" if fault.critical and there else "warn" if there else "text"
     time = f"{fault_time(fault, fault.seconds, short=True):>6} " if columns.time else ""
     step = f"{fault.step:>4} " if columns.step else ""
     state = state_words(fault) if columns.state == STATE else short_state(fault)
+    if then and fault.status == OPEN and columns.state == STATE:
+        state = WAS_OPEN
     last = shorten(f"  {clean(last_words(fault))}", columns.last) if columns.last else ""
     return (
         (f"{mark_of(fault)} ", ink),
