@@ -16,8 +16,6 @@ from textual.screen import Screen
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_sim.worlds.injection import KINDS
-from tangy_tui.app.fault_commands import possible_kinds
 from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, Reached
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
@@ -27,7 +25,6 @@ from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.monitoring.fault import OVER, Diagnosed, Fault, Moved
 from tangy_tui.monitoring.games import record_all_well, uncleared
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.text import injections
 from tangy_tui.text.earlier import before_words
 from tangy_tui.text.faults import (
     banner_words,
@@ -42,7 +39,7 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
-from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
+from tangy_tui.ui.fault_injection import FaultInjection
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.staged_recovery import StagedRecovery, takes_time
 from tangy_tui.ui.widgets.command_input import CommandInput
@@ -103,8 +100,7 @@ class FaultConsole:
         self.staged = StagedRecovery(control.supervision)
         """The recovery whose outcome is shown later."""
         self._put_away: set[tuple[str, int]] = set()
-        self._asked_for: dict[str, int] = {}
-        self._game = 0
+        self.injection = FaultInjection(control.supervision, control.by)
 
     def begin(self) -> None:
         """Start polling; exempt all present objects from garbage collection.
@@ -341,51 +337,6 @@ class FaultConsole:
     def give_up(self) -> None:
         """End the halted game."""
         self._tell(self._control.give_up(), True)
-
-    # ---------------------------------------------------------------- bringing faults about
-
-    def refuses(self) -> str:
-        """Return why no fault can be injected now, "" if one can."""
-        if not self.simulated:
-            return injections.NOT_SIMULATED
-        return injections.NO_GAME if self.supervision.over else ""
-
-    async def inject(self) -> tuple[str, bool]:
-        """Choose a fault, and inject or lift it.
-
-        Returns:
-            The result in words ("": nothing was done), and whether it is visible at once.
-        """
-        world = self.supervision.world
-        if not isinstance(world, FaultyWorld | BenchedWorld):
-            return injections.NOT_SIMULATED, False
-        if self._game != self.supervision.games:
-            self._game = self.supervision.games
-            self._asked_for.clear()
-        to_come = [
-            kind
-            for kind, came in self._asked_for.items()
-            if kind not in world.present and all(kind != late for _, late in world.came[came:])
-        ]
-        book = self.supervision.book
-        possible = possible_kinds(rule.code for rule in book.rules)
-        called = {name: book.rule(KINDS[name].code).name for name in possible}
-        dialog = InjectDialog(world.present, to_come, called)
-        kind = await self._screen.app.push_screen_wait(dialog)
-        if kind is None or self.refuses():
-            return "", False
-        if kind in world.present or kind in to_come:
-            there = kind in world.present
-            world.lift(kind)
-            self.supervision.note("fault lifted", self._control.by, detail=kind)
-            self._asked_for.pop(kind, None)
-            return injections.lifted_words(kind), there
-        self._asked_for[kind] = len(world.came)
-        self.supervision.note("fault injected", self._control.by, detail=kind)
-        world.inject(kind)
-        if comes_later(kind):
-            return injections.comes_later_words(kind), False
-        return injections.injected_words(kind), True
 
 
 def _told_so_far(fault: Fault) -> tuple[str, int]:

@@ -305,14 +305,14 @@ class PlayPanels(TangyScreen[Tally]):
 
     def action_inject(self) -> None:
         """Inject a fault into the simulated room, or lift one."""
-        if refusal := self._faults.refuses():
+        if refusal := self._faults.injection.refuses():
             self._tell_now(refusal, "warn")
         else:
-            self.run_worker(self._inject(), name="inject", group="inject")
+            self.app.push_screen(self._faults.injection.dialog(), self._inject)
 
-    async def _inject(self) -> None:
+    def _inject(self, kind: str | None) -> None:
         try:
-            said, shown = await self._faults.inject()
+            said, shown = self._faults.injection.inject(kind)
         except TangyError as error:  # it cannot be logged, so it is not done
             said, shown = str(error), False
         if shown:  # the screen shows it already, and a toast would cover that
