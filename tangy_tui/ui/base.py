@@ -98,6 +98,10 @@ class TangyScreen(Screen[ResultT]):
     """
     HELP: ClassVar[str] = ""
     ALLOW_IN_MAXIMIZED_VIEW = ".-textual-system,StatusLine,#keys,#command"
+    LETTERS_FOLLOW: ClassVar[tuple[str, ...]] = ()
+    """The actions that push a dialog for which a person may type letters without waiting for it.
+
+    They are carried out before the next key is read, so that it goes to the dialog."""
 
     def close(self, result: ResultT) -> None:
         """Dismiss the screen with a result, unless it is covered or dismissed already."""

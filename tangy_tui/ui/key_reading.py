@@ -34,7 +34,7 @@ class KeyReader:
             return True
         if writes or not isinstance(event, events.Key):
             return False
-        if self._begins_filter(event):
+        if self._begins_filter(event) or self._opens_dialog(event):
             return True
         filters = getattr(focused, "LETTERS_FILTER", False) and event.is_printable
         return bool(pasted_text(event)) and _is_text(event) and not filters
@@ -51,6 +51,17 @@ class KeyReader:
                 begin()
             else:  # it has no widgets yet
                 top.call_later(begin)
+        return True
+
+    def _opens_dialog(self, event: events.Key) -> bool:
+        """Open a dialog before the next key is read, which may be a letter for it."""
+        top = self._app.screen_stack[-1] if self._app.screen_stack else None
+        action = keymap_of(self._app).action(event.key)
+        if not isinstance(top, TangyScreen) or action not in top.LETTERS_FOLLOW:
+            return False
+        if pasted_text(event) or not top.is_mounted or not top.check_action(action, ()):
+            return False
+        getattr(top, f"action_{action}")()
         return True
 
     def _is_typed(self, event: events.Key | events.Paste) -> bool:

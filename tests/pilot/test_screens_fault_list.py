@@ -18,7 +18,7 @@ from tangy_tui.ui.widgets.fault_list import SHORTEST_LAST, FaultList, columns_fo
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
-from tests.pilot.conftest import SMALL, Run
+from tests.pilot.conftest import SMALL, Run, type_at_once
 from tests.pilot.faults import (
     MIDDLE,
     TINY,
@@ -246,3 +246,16 @@ async def test_every_kind_of_fault_can_be_injected(run: Run) -> None:
         assert [kind.name for kind in dialog.kinds] == list(KINDS)
         pilot.type(*"covered")  # the console's name of the fault, not the kind's name
         await until_shown(pilot, lambda: [k.name for k in dialog.kinds] == ["camera-occluded"])
+
+
+@pytest.mark.slow
+async def test_letters_typed_right_after_the_key_of_faults_go_to_their_list(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(MIDDLE, app=playing(workspace, policy)) as pilot:
+        screen, game, _ = game_of(pilot)
+        assert screen.control.going
+        type_at_once(pilot.app, "f", "p", "u")  # p alone would pause the game
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await until_shown(pilot, lambda: "pu_" in pilot.text())
+        assert screen.control.going and not game.faults

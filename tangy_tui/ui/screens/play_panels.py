@@ -68,6 +68,7 @@ class PlayPanels(TangyScreen[Tally]):
 
     mode = "play"
     """The name of the screen on the status line."""
+    LETTERS_FOLLOW = ("inject",)
     FIRST = CHOOSABLE[0]
     """The panel that is shown first."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
