@@ -21,6 +21,11 @@ PRESSING_STRATEGIES = _TOP.words("pressing_strategies")
 QUESTIONS_ACTIVITY = _TOP.text("questions")
 """The activity that is the template for imported questions."""
 
+NEW_ACTIVITIES = {
+    kind: _TOP.text(f"new_{kind}") for kind in ("quiz", "songs", "exercises", "memory", "cards")
+}
+"""The activities from which new ones of each kind are made."""
+
 ASK_AGAIN = _TOP.words("ask_again")
 """The texts that repeat a question after an unclear answer."""
 

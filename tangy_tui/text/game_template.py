@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-ASK_POINTS = "Do their moves win points, as in a game? (y/n) "
-
 # Parts that would make lines of the template too long: an inline table cannot be wrapped.
 MOVED = '["moving is yes", "move is not none"]'
 OPEN = '["moving is yes"]'
-WON = '["any score >= 3"]'
 WHOSE = 'about = "whose turn"'
 WAITS = 'sees = ["clock", "helped"]'
 TOLD = '["scores not told yet", "scores told"]'
 ABLE = '["moving is yes", "move is none", "turn is yes"]'
 
 
-def game_file(name: str, title: str) -> str:
+def game_file(name: str, title: str, win_at: int) -> str:
     """Return the game's file, which can be played as it is and tells what to change.
 
     Args:
         name: the name of the file and the activity.
         title: the title of the activity.
+        win_at: the points with which a person wins.
     """
+    won = f'["any score >= {win_at}"]'
     return f"""# {title}. Try it with: tangy activity try {name}.toml
 name = "{name}"
 title = "{title}"
@@ -33,7 +32,7 @@ stages = [
   {{ name = "start", words = "nobody has been welcomed yet", when = ["opened is no"] }},
   {{ name = "moved", words = "{{name}} made a move", when = {MOVED}, {WHOSE}, sees = ["move"] }},
   {{ name = "wait", words = "no move of {{name}} yet", when = {OPEN}, {WHOSE}, {WAITS} }},
-  {{ name = "won", words = "a person has enough points", when = {WON}, sees = ["told"] }},
+  {{ name = "won", words = "a person has enough points", when = {won}, sees = ["told"] }},
   {{ name = "next", words = "the next person can begin" }},
 ]
 words = {{ move = ["no move", "it won a point", "it won nothing"], told = {TOLD} }}

@@ -101,7 +101,7 @@ def activity_check(
             names.append(file)
     if not names and not books:
         names, books = list(shipped_activities()), [None]
-    checked = [_check(name, robot) for name in names]
+    checked = [checked_file(name, robot) for name in names]
     rules = [check_rules(robot, path) for path in books]
     mistakes = [line for one, _ in checked for line in one.mistakes]
     mistakes += [line for one in rules for line in one.mistakes]
@@ -254,7 +254,8 @@ def _holds_faults(file: str) -> bool:
         return False
 
 
-def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
+def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
+    """Check the file of an activity; return the activity, too, if it can be read."""
     from tangy_profiles.activity import load_activity
     from tangy_profiles.declared.activity import DeclaredActivity
     from tangy_profiles.declared.checking import findings

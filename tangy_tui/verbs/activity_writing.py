@@ -1,4 +1,4 @@
-"""`tangy activity new`, `import` and `convert`: write the file of an activity."""
+"""`tangy activity import` and `convert`: write the file of an activity."""
 
 from __future__ import annotations
 
@@ -26,44 +26,19 @@ def activity_import(
     from tangy_profiles.defaults import QUESTIONS_ACTIVITY
     from tangy_profiles.given_file import read_given_text
     from tangy_tui.app import question_files
+    from tangy_tui.app.new_activity import name_of
     from tangy_tui.text import activity_template as template
 
     questions = question_files.read_questions(
         read_given_text(file, LARGEST_QUESTIONS).lstrip("\ufeff"), file.name
     )
-    new = template.NewActivity(plain(title), "", turns=True)
-    if not new.name:
+    title = plain(title)
+    if not (name := name_of(title)):
         raise TangyError("--title: must have at least one letter.")
     base = known_activities()[QUESTIONS_ACTIVITY].read_text(encoding="utf-8")
-    toml = question_files.questions_activity(base, new.name, new.title, questions)
+    toml = question_files.questions_activity(base, name, title, questions)
     table = question_files.questions_table(questions, template.OR, template.HINT)
-    _write_new(folder, new.name, toml, table)
-
-
-def activity_new(
-    folder: Annotated[Path, typer.Argument(help="Where the files go.")] = Path(),
-) -> None:
-    """Write the file of a new activity; it asks you.
-
-    You can play it at once.
-    """
-    from tangy_tui.text import activity_template as template
-    from tangy_tui.text.game_template import ASK_POINTS, game_file
-
-    title = _asked(template.ASK_TITLE)
-    while not template.NewActivity(title, "", turns=False).name:
-        title = _asked(template.ASK_AGAIN)
-    item = _asked(template.ASK_ITEMS)
-    while item and _yes_or_no(item):
-        item = _asked(template.ASK_WHICH_ITEM)
-    item = "" if _yes_or_no(item) is False else template.without_article(item)
-    turns = _asked_yes(template.ASK_TURNS)
-    new = template.NewActivity(title, item, turns)
-    if turns and not item and _asked_yes(ASK_POINTS):
-        _write_new(folder, new.name, game_file(new.name, new.title), "")
-        return
-    table = template.items_table(new) if item else ""
-    _write_new(folder, new.name, template.activity_file(new), table)
+    write_new(folder, name, toml, table)
 
 
 def activity_convert(
@@ -96,9 +71,9 @@ def activity_convert(
         print(plain(line))
 
 
-def _write_new(folder: Path, name: str, activity: str, items: str) -> None:
+def write_new(folder: Path, name: str, activity: str, items: str, *, cards: bool = False) -> None:
     """Write the file of a new activity, and its table if it has one; never overwrite a file."""
-    from tangy_tui.text import activity_template as template
+    from tangy_tui.text.activity_questions import written_lines
 
     toml, table = folder / f"{name}.toml", folder / f"{name}.csv"
     instead = "give it another title"
@@ -107,7 +82,7 @@ def _write_new(folder: Path, name: str, activity: str, items: str) -> None:
     _write(toml, activity, instead)
     if items:
         _write(table, items, instead)
-    for line in template.written_lines(str(toml), str(table) if items else ""):
+    for line in written_lines(str(toml), str(table) if items else "", cards=cards):
         print(plain(line))
 
 
@@ -125,27 +100,3 @@ def _write(path: Path, text: str, instead: str) -> None:
 
 def _there_already(path: Path, instead: str) -> TangyError:
     return TangyError(plain(f"{path} is there already: {instead}."))
-
-
-def _asked_yes(question: str) -> bool:
-    """Ask until the answer is yes or no."""
-    from tangy_tui.text.activity_template import ASK_YES_OR_NO
-
-    while (said := _yes_or_no(_asked(question))) is None:
-        question = ASK_YES_OR_NO
-    return said
-
-
-def _yes_or_no(text: str) -> bool | None:
-    from tangy_tui.language.answers import yes_or_no
-
-    return yes_or_no({"y": "yes", "n": "no"}.get(text.lower(), text))
-
-
-def _asked(question: str) -> str:
-    """Ask for a line; drop characters that would break a TOML string."""
-    try:
-        said = input(question)
-    except EOFError:
-        raise TangyError("Nothing was answered: nothing is written.") from None
-    return " ".join("".join(c for c in plain(said) if c not in '"\\{}').split())[:60]

@@ -74,7 +74,7 @@ VERBS = {
     "activity": Verb(
         "activity",
         below=(
-            ("new", "activity_writing", "activity_new"),
+            ("new", "activity_new", "activity_new"),
             ("import", "activity_writing", "activity_import"),
             ("convert", "activity_writing", "activity_convert"),
         ),

@@ -1,0 +1,179 @@
+"""`tangy activity new` asks an author, and what it writes is checked and can be played at once."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_tui.app.new_activity import KINDS
+from tangy_tui.text.activity_questions import PROBLEMS
+from tests.support.media import make_picture
+
+Tangy = Callable[..., CompletedProcess[str]]
+PIECES = {
+    "quiz": ("Which flower has thorns?; rose; tulip, daisy; It is red.", "Is ice cold?; yes; no"),
+    "talk": ("Who was your best friend?; What did you do together?", "What did you cook?"),
+    "songs": ("Row your boat; Row, row, row your boat", "My Bonnie; My Bonnie lies over the ocean"),
+    "exercises": ("Raise your arms; Lift both arms and lower them again; six",),
+    "memory": ("apples; top; An apple a day ...", "boats"),
+}
+WAYS = [
+    *(pytest.param(kind, (), id=kind) for kind in KINDS),
+    *(
+        pytest.param(kind, [part for row in rows for part in ("--row", row)], id=f"{kind} of mine")
+        for kind, rows in PIECES.items()
+    ),
+    pytest.param("quiz", ("--teams", "Reds, Blues", "--no-points", "--rounds", 3), id="teams"),
+    pytest.param("talk", ("--item", "a poem", "--no-turns"), id="a group"),
+    pytest.param("game", ("--win-at", 2), id="a short game"),
+    pytest.param("cards", ("--claim", "house", "--pattern", "x", "--numbers", 50), id="lotto"),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "options"), WAYS)
+def test_each_kind_of_new_activity_is_taught_learnt_and_played_at_once(
+    kind: str, options: tuple[object, ...], tangy: Tangy, tmp_path: Path
+) -> None:
+    folder = tmp_path / "mine"
+    made = tangy("activity", "new", folder, "--title", "Ours", "--kind", kind, "--yes", *options)
+    assert (made.returncode, made.stderr) == (0, "")
+    (file,) = folder.glob("*.toml")
+    checked = json.loads(tangy("activity", "check", "--json", file).stdout)
+    assert [(one["mistakes"], one["warnings"]) for one in checked["files"]] == [([], [])]
+    at = ("--activity", file, "--data", tmp_path / "data")
+    taught = tangy("teach", "--teacher", "scripted", "--guided", "--games", 1, *at)
+    assert (taught.returncode, taught.stderr) == (0, "")
+    assert tangy("learn", *at).returncode == 0
+    done = tangy("play", "--games", 5, "--headless", "--json", "--seed", 3, *at)
+    played = json.loads(done.stdout)
+    assert (played["finished"], played["asked"], played["faults"]) == (5, 0, [])
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize("kind", ["quiz", "cards"])
+def test_a_new_activity_is_played_on_the_bench(kind: str, tangy: Tangy, tmp_path: Path) -> None:
+    tangy("activity", "new", tmp_path, "--title", "Ours", "--kind", kind, "--yes")
+    at = ("--activity", tmp_path / "ours.toml", "--data", tmp_path / "data")
+    tangy("teach", "--teacher", "scripted", "--guided", *at)
+    tangy("learn", *at)
+    played = tangy("live", "--bench", "--headless", "--json", "--seed", 2, *at)
+    assert json.loads(played.stdout)["finished"] == 1
+
+
+QUIZ = """Garden quiz
+1
+
+maybe
+y
+
+Which flower has thorns?
+tulip
+back
+rose
+rose, tulip, ROSE
+tulip, daisy
+
+What do bees make?
+honey
+milk, silk
+
+
+"""
+
+
+@pytest.mark.slow
+def test_questions_are_asked_again_until_they_fit_and_can_be_gone_back_to(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    made = tangy("activity", "new", tmp_path, stdin=f"!\n{QUIZ}\ny\n")
+    assert (made.returncode, made.stderr) == (0, "")
+    for problem in ("yes", "letters", "same"):
+        assert made.stdout.count(PROBLEMS[problem]) == 1
+    head, *rows = csv.reader((tmp_path / "garden-quiz.csv").read_text("utf-8").splitlines())
+    table = [dict(zip(head, row, strict=True)) for row in rows]
+    assert [(row["ask"], row["right"]) for row in table] == [
+        ("Which flower has thorns?", "rose"),
+        ("What do bees make?", "honey"),
+    ]
+    assert [row["hint"] for row in table] == ["It is not daisy.", "It is not silk."]
+
+
+@pytest.mark.slow
+def test_answers_can_be_changed_by_their_number_and_rows_removed(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    changes = "1\nMeadow quiz\n6\nWhich flower pricks?\n\n\n\n7\n-\n1\ny\n"
+    made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n{changes}")
+    assert (made.returncode, made.stderr) == (0, "")
+    assert not (tmp_path / "garden-quiz.toml").exists()
+    _, *rows = csv.reader((tmp_path / "meadow-quiz.csv").read_text("utf-8").splitlines())
+    assert [row[0] for row in rows] == ["Which flower pricks?"]
+    assert "rounds = 1 " in (tmp_path / "meadow-quiz.toml").read_text("utf-8")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", ["n\n", "", "back\n"])
+def test_nothing_is_written_without_a_yes(ending: str, tangy: Tangy, tmp_path: Path) -> None:
+    made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n{ending}")
+    assert made.returncode == (0 if ending == "n\n" else 2)
+    assert list(tmp_path.glob("garden*")) == []
+
+
+@pytest.mark.slow
+def test_pictures_of_questions_are_shown_and_must_exist(tangy: Tangy, tmp_path: Path) -> None:
+    make_picture(tmp_path / "rose.png")
+    row = "Which flower is this?; rose; tulip, daisy; It has thorns.; rose.png"
+    rows = ("--yes", "--row", row, "--row", "Is ice cold?; yes; no")
+    made = tangy("activity", "new", tmp_path, "--title", "Flowers", *rows)
+    assert (made.returncode, made.stderr) == (0, "")
+    assert "rose.png" in tangy("activity", "try", tmp_path / "flowers.toml").stdout
+    assert "sound" not in (tmp_path / "flowers.toml").read_text("utf-8")
+    lacks = ("--yes", "--row", "Who?; you; me; ; no.png")
+    other = tangy("activity", "new", tmp_path, "--title", "Other", *lacks)
+    assert other.returncode == 2
+    assert "There is no no.png" in other.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--kind", "chess"), "--kind: Please type a number"),
+        (("--teams", "Reds"), "--teams: Please type from 2 to 6 names"),
+        (("--row", "Who?; me; me"), "--row: Two of the answers are the same"),
+        (("--row", "Who?"), "--row: Please type an answer."),
+        (("--rounds", "0"), "--rounds: Please type a number from 1"),
+        (("--kind", "cards", "--row", "x"), "--row: This kind has no rows."),
+        (("--kind", "cards", "--numbers", "52"), "--numbers: Please type a number that 5 divides"),
+    ],
+)
+def test_an_option_that_cannot_be_taken_is_named(
+    options: tuple[str, ...], told: str, tangy: Tangy, tmp_path: Path
+) -> None:
+    made = tangy("activity", "new", tmp_path, "--title", "Ours", "--yes", *options)
+    assert made.returncode == 2
+    assert told in made.stderr
+    assert list(tmp_path.glob("ours*")) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("said", ["poem", "a poem", "An old poem", "the poem", "a"])
+def test_the_article_of_an_item_is_removed(said: str, tangy: Tangy, tmp_path: Path) -> None:
+    options = ("--title", "Poems", "--kind", "talk", "--item", said, "--yes")
+    assert tangy("activity", "new", tmp_path, *options).returncode == 0
+    item = said.removeprefix("An ").removeprefix("a ").removeprefix("the ")
+    assert f"The first {item}," in (tmp_path / "poems.csv").read_text("utf-8")
+
+
+def test_an_existing_file_is_not_overwritten(tangy: Tangy, tmp_path: Path) -> None:
+    (tmp_path / "poems.csv").write_text("mine", encoding="utf-8")
+    made = tangy("activity", "new", tmp_path, "--title", "Poems", "--kind", "talk", "--yes")
+    assert made.returncode == 2
+    assert "is there already" in made.stderr
+    assert (tmp_path / "poems.csv").read_text(encoding="utf-8") == "mine"
