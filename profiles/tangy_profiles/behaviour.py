@@ -9,12 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from string import Formatter
 from types import MappingProxyType
 from typing import cast
 
 from tangy_profiles.effects import EFFECTS, Effect
-from tangy_profiles.reading import Table, nearest
+from tangy_profiles.reading import Table
 
 CLOSINGS = ("never", "always", "when correct")
 PLACES = ("front", "attended", "here")
@@ -113,15 +112,7 @@ def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) 
 
 def _template(table: Table, key: str) -> str:
     text = table.text(key)
-    try:
-        slots = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
-    except ValueError:
-        raise table.wrong(key, "has an unpaired brace.") from None
-    for slot, form, conversion in slots:
-        if slot not in SLOTS:
-            raise table.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', SLOTS)}")
-        if form or conversion:
-            raise table.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
+    table.check_slots(key, text, SLOTS)
     return text
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from string import Formatter
 
 from tangy_profiles.defaults import SHIPPED
 from tangy_profiles.errors import ProfileError
@@ -202,27 +201,15 @@ def _value(test: Table, word: str) -> Fact:
 
 def _text(entry: Table, key: str, *, optional: bool = False) -> str:
     text = entry.text(key, "" if optional else None)
-    _check_slots(entry, key, text)
+    entry.check_slots(key, text, SLOTS)
     return text
 
 
 def _texts(entry: Table, key: str) -> tuple[str, ...]:
     texts = entry.words(key)
     for text in texts:
-        _check_slots(entry, key, text)
+        entry.check_slots(key, text, SLOTS)
     return texts
-
-
-def _check_slots(entry: Table, key: str, text: str) -> None:
-    try:
-        slots = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
-    except ValueError:
-        raise entry.wrong(key, "has an unpaired brace.") from None
-    for slot, form, conversion in slots:
-        if slot not in SLOTS:
-            raise entry.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', SLOTS)}")
-        if form or conversion:
-            raise entry.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
 
 
 def _check_order(entry: Table, rule: FaultRule, earlier: Sequence[FaultRule]) -> None:

@@ -8,8 +8,9 @@ import os
 import re
 import reprlib
 import tomllib
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from string import Formatter
 from typing import Any
 
 from tangy_profiles.errors import ProfileError
@@ -143,6 +144,22 @@ class Table:
         if plain(value) != value:
             raise self.wrong(key, "holds a character that cannot be shown.")
         return value
+
+    def check_slots(self, key: str, text: str, slots: Sequence[str]) -> None:
+        """Check that each pair of braces in a text holds just the name of a slot.
+
+        Raises:
+            ProfileError: a brace has no partner, or a slot is unknown or has a format.
+        """
+        try:
+            found = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
+        except ValueError:
+            raise self.wrong(key, "has an unpaired brace.") from None
+        for slot, form, conversion in found:
+            if slot not in slots:
+                raise self.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', slots)}")
+            if form or conversion:
+                raise self.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
 
     def flag(self, key: str, default: bool | None = None) -> bool:
         """Read true or false."""
