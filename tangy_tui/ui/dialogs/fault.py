@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Vertical
-from textual.content import Content
 
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.robot import Robot
@@ -24,19 +21,15 @@ from tangy_tui.text.faults import (
     move_words,
     state_words,
 )
-from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
+from tangy_tui.ui.dialogs.page import PageDialog
+from tangy_tui.ui.widgets.page import PageLine, heading, paragraph
 from tangy_tui.ui.widgets.wrapping import wrap
 
 
-class FaultDialog(Dialog[None]):
+class FaultDialog(PageDialog):
     """The timeline of a fault, its evidence, and the advice."""
 
-    DEFAULT_CSS = """
-    FaultDialog > .box { width: 78; padding: 0 1; }
-    FaultDialog Page { height: auto; max-height: 1fr; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,enter", "close", "Close", key_display="esc"),
     ]
@@ -47,7 +40,7 @@ class FaultDialog(Dialog[None]):
 
     def __init__(self, fault: Fault, book: FaultBook, robot: Robot, label: Label = str) -> None:
         """Show a fault; `label` returns the words for a behaviour."""
-        super().__init__(None)
+        super().__init__(f"{mark_of(fault)} {clean(fault.name)}")
         self._label = label
         self._fault = fault
         self._book = book
@@ -58,22 +51,8 @@ class FaultDialog(Dialog[None]):
         """The fault shown."""
         return self._fault
 
-    def compose(self) -> ComposeResult:
-        """Lay out the page."""
-        box = Vertical(Page(self._write), id="fault", classes="box")
-        box.border_title = Content(f"{mark_of(self._fault)} {clean(self._fault.name)}")
-        box.border_subtitle = "esc closes"
-        yield box
-
-    def on_mount(self) -> None:
-        """Focus the page."""
-        self.query_one(Page).focus()
-
-    def action_close(self) -> None:
-        """Close the dialog."""
-        self.answer(None)
-
-    def _write(self, width: int) -> list[PageLine]:
+    def write(self, width: int) -> list[PageLine]:
+        """Format the page for a width in cells."""
         fault = self._fault
         lines = paragraph(clean(fault.console), width, "strong")
         kind = f"{kind_words(fault)}, after step {fault.step}; {state_words(fault)}"

@@ -6,23 +6,16 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import ClassVar
 
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Vertical
-from textual.content import Content
 
 from tangy_tui.text import messages as text
-from tangy_tui.ui.base import Dialog
-from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
+from tangy_tui.ui.dialogs.page import PageDialog
+from tangy_tui.ui.widgets.page import PageLine, heading, paragraph
 
 
-class MessagesDialog(Dialog[None]):
+class MessagesDialog(PageDialog):
     """The last messages, the newest first, with the time at which each was shown."""
 
-    DEFAULT_CSS = """
-    MessagesDialog > .box { width: 78; padding: 0 1; }
-    MessagesDialog Page { height: auto; max-height: 1fr; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,exclamation_mark", "close", "Close", key_display="esc"),
     ]
@@ -41,26 +34,12 @@ class MessagesDialog(Dialog[None]):
             heading: the heading above the messages before an interruption.
             before: these messages.
         """
-        super().__init__(None)
+        super().__init__(text.TITLE, text.KEYS)
         self._told = tuple(reversed(told))
         self._heading, self._before = heading, tuple(reversed(before))
 
-    def compose(self) -> ComposeResult:
-        """Lay out the page."""
-        box = Vertical(Page(self._write), id="messages", classes="box")
-        box.border_title = Content(text.TITLE)
-        box.border_subtitle = text.KEYS
-        yield box
-
-    def on_mount(self) -> None:
-        """Focus the page."""
-        self.query_one(Page).focus()
-
-    def action_close(self) -> None:
-        """Close the dialog."""
-        self.answer(None)
-
-    def _write(self, width: int) -> list[PageLine]:
+    def write(self, width: int) -> list[PageLine]:
+        """Format the page for a width in cells."""
         lines: list[PageLine] = []
         for at, words in self._told:
             lines += paragraph(text.told_words(at, words), width)

@@ -7,10 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.cells import cell_len
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Vertical
-from textual.content import Content
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beta
@@ -30,8 +27,8 @@ from tangy_tui.text.decisions import (
     why_words,
 )
 from tangy_tui.text.numbers import counted
-from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.page import PageDialog
 from tangy_tui.ui.messages import OpenStep
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.policy_table import bar
@@ -54,17 +51,13 @@ class ComingStep:
     before: str
 
 
-class WhyDialog(Dialog[None]):
+class WhyDialog(PageDialog):
     """The situation, the votes, the steps behind a decision, and the draws of a strategy.
 
     Up and down go from step to step and scroll; Enter opens the step in its demonstration. The
     newest steps come first; if there are many, Enter on the last line shows the others.
     """
 
-    DEFAULT_CSS = """
-    WhyDialog > .box { width: 78; padding: 0 1; }
-    WhyDialog Page { height: auto; max-height: 1fr; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,w", "close", "Close", key_display="esc"),
     ]
@@ -96,11 +89,11 @@ class WhyDialog(Dialog[None]):
             remarks: sentences before the others, such as who answered what.
             coming: the step that follows the explained one; it is explained first.
         """
-        super().__init__(None)
+        opens = "enter opens a step   " if why.steps else ""
+        super().__init__(clean(title), f"{opens}esc closes")
         self._workspace = workspace
         self._why = why
         self._choice = choice
-        self._title = clean(title)
         self._remarks = tuple(remarks)
         self.coming = coming
         """The next step of the game, explained before the last one."""
@@ -113,33 +106,19 @@ class WhyDialog(Dialog[None]):
         """The explanation shown."""
         return self._why
 
-    def compose(self) -> ComposeResult:
-        """Lay out the page."""
-        box = Vertical(Page(self._write), id="why", classes="box")
-        box.border_title = Content(self._title)
-        box.border_subtitle = "enter opens a step   esc closes" if self._why.steps else "esc closes"
-        yield box
-
-    def on_mount(self) -> None:
-        """Focus the page."""
-        self.query_one(Page).focus()
-
-    def action_close(self) -> None:
-        """Close the dialog."""
-        self.answer(None)
-
     def on_page_chosen(self, event: Page.Chosen) -> None:
         """Open a step in its demonstration."""
         event.stop()
         if event.index >= len(self._why.steps):
             self._whole.add(event.index - len(self._why.steps))
             page = self.query_one(Page)
-            page.show(self._write, page.cursor)
+            page.show(self.write, page.cursor)
             return
         shown = self._why.steps[event.index]
         self.post_message(OpenStep(shown.demonstration, shown.number))
 
-    def _write(self, width: int) -> list[PageLine]:
+    def write(self, width: int) -> list[PageLine]:
+        """Format the page for a width in cells."""
         lines: list[PageLine] = []
         if (coming := self.coming) is not None:
             lines += paragraph(clean(coming.words), width, "strong")
