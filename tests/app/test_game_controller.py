@@ -5,15 +5,12 @@ from __future__ import annotations
 import threading
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
-from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.past_game import interrupted_game
-from tangy_profiles.robot import load_robot
-from tangy_profiles.room import load_room
 from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import (
     Accept,
@@ -43,6 +40,7 @@ from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.verification import Asked, Reply, Say, Verified
 from tangy_tui.monitoring.fault import Diagnosed
 from tests.hw.links import FakeLink
+from tests.support.live_worlds import live_world
 
 
 class Played:
@@ -54,10 +52,7 @@ class Played:
         self.link = FakeLink(tuple(workspace.names))
         self.world: LiveWorld | None = None
         if robot:
-            self.world = LiveWorld(
-                workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
-                load_robot(), load_room(), seed=1, names=workspace.names, pace=0.0,
-            )  # fmt: skip
+            self.world = live_world(workspace, self.link, pace=0.0)
         supervision = workspace.supervision(
             learnt, 1, asks=True, world=self.world, injections=() if robot else inject
         )

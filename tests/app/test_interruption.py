@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
 
 import pytest
 
-from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.game_records import (
     GameBeginning,
@@ -21,7 +18,6 @@ from tangy_profiles.game_records import (
 )
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_profiles.past_game import NotResumable, PastGame, interrupted_game
-from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
@@ -40,6 +36,7 @@ from tangy_tui.monitoring.log_check import log_problems
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.monitoring.supervision import Supervision
 from tests.hw.links import FakeLink
+from tests.support.live_worlds import live_world
 
 SEED = 31
 
@@ -214,10 +211,7 @@ class Robot:
         self.workspace = workspace
         self.link = FakeLink(tuple(workspace.names))
         self.link.time = on_for
-        self.world = LiveWorld(
-            workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
-            load_robot(), load_room(), seed=SEED, names=workspace.names, pace=0.0,
-        )  # fmt: skip
+        self.world = live_world(workspace, self.link, seed=SEED, pace=0.0)
         supervision = workspace.supervision(policy, SEED, asks=True, world=self.world)
         self.control = GameController(supervision, "Ada", robot=self.world, past=past)
         self.control.begin()

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from datetime import datetime
 from pathlib import Path
-from typing import cast
 
 import pytest
 
 from tangy_hw.device_protocols import DeviceError
-from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.game_records import GameChange, GameEnding, GameResumed
 from tangy_profiles.game_world import LIVE
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT
@@ -47,6 +43,7 @@ from tangy_tui.pages.session import session_page
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import session_lines
 from tests.hw.links import FakeLink, LaidCard
+from tests.support.live_worlds import live_world
 
 SEED = 31
 
@@ -70,10 +67,7 @@ class LiveGame:
         policy, _ = load_policy(workspace.store, workspace.activity)
         self.workspace = workspace
         self.link = FakeLink(tuple(workspace.names))
-        self.world = LiveWorld(
-            workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
-            load_robot(), workspace.room, seed=SEED, names=workspace.names, pace=0.0,
-        )  # fmt: skip
+        self.world = live_world(workspace, self.link, seed=SEED, pace=0.0)
         supervision = workspace.supervision(policy, SEED, asks=True, world=self.world)
         self.control = GameController(supervision, "Ada", robot=self.world, past=past)
         self.control.goes_on = goes_on

@@ -5,20 +5,18 @@ from __future__ import annotations
 import os
 from itertools import count
 from pathlib import Path
-from typing import TextIO, cast
+from typing import TextIO
 
 import pytest
 
-from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import LIVE
-from tangy_profiles.robot import load_robot
 from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.verbs.live_lines import LiveLines
 from tests.hw.links import FakeLink
+from tests.support.live_worlds import live_world
 
 RESUMES = "tangy live --resume"
 CALL = 2  # Tangy greets the group before
@@ -47,10 +45,7 @@ def test_a_game_is_kept_if_the_robot_does_not_come_on_again(
     people = tuple(workspace.names)
     link = FakeLink(people)
     monkeypatch.setattr("sys.stdin", joins_at_the_first_call(link))
-    world = LiveWorld(
-        workspace.activity, people, cast(RobotLink, link),
-        load_robot(), workspace.room, seed=1, names=workspace.names, pace=30.0,
-    )  # fmt: skip
+    world = live_world(workspace, link, pace=30.0)
     console = LiveLines(workspace, 1, "Ada", None)
     with pytest.raises(TangyError), console.keeping(RESUMES):
         raise TangyError("It cannot be switched on.")

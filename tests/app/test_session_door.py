@@ -13,7 +13,7 @@ from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
 from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.app.session_door import (
     FILE,
     LONGEST_LINE,
@@ -24,6 +24,7 @@ from tangy_tui.app.session_door import (
 from tangy_tui.app.watching import Guest, NobodyThere, WatchedLog
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tests.support.games import watched_game
 from tests.support.waiting import wait_until
 
 
@@ -34,15 +35,9 @@ def data_folder(taught: Path) -> Path:
 
 
 @pytest.fixture
-def control(workspace: Workspace, learnt: Policy) -> Iterator[GameController]:
+def control(workspace: Workspace, learnt: Policy) -> GameController:
     """A game after five steps that other consoles may watch."""
-    control = scripted_controller(workspace.supervision(learnt, 5))
-    control.begin()
-    while control.supervision.steps < 5:
-        go_on_by_script(control, expert=False)
-    workspace.door.attach(control)
-    workspace.door.open()
-    yield control
+    return watched_game(workspace, learnt)
 
 
 @pytest.fixture

@@ -22,6 +22,7 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.decisions import because_words
+from tests.support.teaching import taught_until
 
 STAGE = "listen"
 
@@ -34,12 +35,7 @@ def workspace(tmp_path: Path) -> Workspace:
 @pytest.fixture
 def teaching(workspace: Workspace) -> TeachingSession:
     """Return a session that waits for an answer about its last step."""
-    session = workspace.teaching("Mary", 1)
-    session.begin()
-    teacher = ScriptedTeacher(session)
-    while not session.demonstration.steps or session.demonstration.steps[-1].state.stage != STAGE:
-        session.apply(teacher.command())
-    return session
+    return taught_until(workspace, STAGE)
 
 
 def ruled(teaching: TeachingSession, *facts: str) -> Ruled:

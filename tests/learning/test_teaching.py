@@ -8,14 +8,12 @@ from types import FrameType
 
 import pytest
 
-from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.state import FRONT, Situation
 from tangy_profiles.store import Store
-from tangy_sim.worlds.users import load_users
-from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Finished, Next, StepUndone, Undo
@@ -30,36 +28,7 @@ from tangy_tui.learning.verification import (
     Verifier,
 )
 from tangy_tui.text.refusals import refused_words
-from tangy_tui.world import World
-
-BINGO = load_activity("bingo")
-YES, NO = Reply(yes=True), Reply(yes=False)
-
-
-def session(
-    store: Store, *, teacher: str = "Ada", seed: int = 1, users: int = 4, activity: Activity = BINGO
-) -> TeachingSession:
-    def world(shown: Demonstration) -> World:
-        return SimulatedWorld(
-            activity, shown.people, seed=shown.seed, users=load_users().teaching()
-        )
-
-    return TeachingSession(activity, load_people(users), store, world, teacher=teacher, seed=seed)
-
-
-def begun(store: Store, *, seed: int = 1, users: int = 4) -> TeachingSession:
-    teaching = session(store, seed=seed, users=users)
-    teaching.begin()
-    return teaching
-
-
-def teach(teaching: TeachingSession, *phrases: str) -> list[Executed]:
-    """Say each phrase, confirm it, and return the executed behaviours."""
-    done = []
-    for phrase in phrases:
-        assert isinstance(teaching.apply(Say(phrase))[0], Asked)
-        done += [e for e in teaching.apply(YES) if isinstance(e, Executed)]
-    return done
+from tests.support.teaching import BINGO, NO, YES, begun, session, teach
 
 
 def whole_game(teaching: TeachingSession) -> Demonstration:

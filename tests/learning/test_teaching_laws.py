@@ -13,33 +13,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import load_activity
 from tangy_profiles.codec import decode, encode
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import StoreError
 from tangy_profiles.events import EventRecord
-from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
-from tangy_sim.worlds.users import load_users
-from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.teaching_events import Executed, Next, StepUndone, TeacherCommand, Undo
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, Refused, Reply, Say
-from tangy_tui.world import World
 from tests.support.laws import tried
-
-BINGO = load_activity("bingo")
-YES, NO = Reply(yes=True), Reply(yes=False)
-
-
-def begun(store: Store, *, seed: int = 1, users: int = 4) -> TeachingSession:
-    def world(shown: Demonstration) -> World:
-        return SimulatedWorld(BINGO, shown.people, seed=shown.seed, users=load_users().teaching())
-
-    teaching = TeachingSession(BINGO, load_people(users), store, world, teacher="Ada", seed=seed)
-    teaching.begin()
-    return teaching
+from tests.support.teaching import BINGO, NO, YES, begun, teach
 
 
 @contextmanager
@@ -47,15 +31,6 @@ def empty_store() -> Iterator[Store]:
     """Open a log that waits for the disk only once, so that tests can try many examples."""
     with TemporaryDirectory() as folder, Store.open(Path(folder)) as opened, opened.transaction():
         yield opened
-
-
-def teach(teaching: TeachingSession, *phrases: str) -> list[Executed]:
-    """Say each phrase, confirm it, and return the executed behaviours."""
-    done = []
-    for phrase in phrases:
-        assert isinstance(teaching.apply(Say(phrase))[0], Asked)
-        done += [e for e in teaching.apply(YES) if isinstance(e, Executed)]
-    return done
 
 
 def logged(store: Store) -> list[Demonstration]:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
-from typing import cast
 
 import pytest
 
-from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import ALONE
 from tangy_profiles.game_records import FaultDiagnosed, FaultMove, GameStep
@@ -22,6 +20,7 @@ from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.watch import MOST_CUT_SHORT
 from tangy_tui.text.report import staff_rows
 from tests.hw.links import FakeLink
+from tests.support.live_worlds import live_world
 
 PEOPLE = ("user1", "user2", "user3", "user4")
 Meanwhile = Callable[[LiveWorld, FakeLink], object]
@@ -47,15 +46,7 @@ def live_game(workspace: Workspace, learnt: Policy) -> tuple[Supervision, LiveWo
     """A game in which user2 has just asked for help, and the robot is at the front."""
     link = FakeLink(PEOPLE)
     link.time = 100.0
-    world = LiveWorld(
-        workspace.activity,
-        PEOPLE,
-        cast(RobotLink, link),
-        workspace.robot,
-        workspace.room,
-        seed=1,
-        names=workspace.names,
-    )
+    world = live_world(workspace, link)
     game = workspace.supervision(learnt, 1, world=world, asks=True)
     game.begin()
     for _ in range(3):

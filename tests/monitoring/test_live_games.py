@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 import pytest
 
-from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.live_games import LiveGames, News
@@ -17,6 +13,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.live_news import live_lines
 from tests.hw.links import FakeLink, LaidCard
+from tests.support.live_worlds import live_world
 
 PEOPLE = ("user1", "user2", "user3", "user4")
 
@@ -26,16 +23,7 @@ def test_a_swapped_seat_is_reported_once_in_each_game(workspace: Workspace, lear
     link = FakeLink(PEOPLE)
     link.cards["user2"] = LaidCard(7)
     link.faces["user2"] = "user4"
-    world = LiveWorld(
-        workspace.activity,
-        PEOPLE,
-        cast(RobotLink, link),
-        workspace.robot,
-        workspace.room,
-        seed=1,
-        names=workspace.names,
-        knows_faces=True,
-    )
+    world = live_world(workspace, link, knows_faces=True)
     game = workspace.supervision(learnt, 1, world=world)
     played = LiveGames(workspace, game)
     lines: list[str] = []
@@ -54,18 +42,6 @@ def test_a_swapped_seat_is_reported_once_in_each_game(workspace: Workspace, lear
         len([line for line in lines if f"{going} (User 2): " in line]) == 6
     )  # one after the last number
     assert said == ["User 4 sits at User 2's place: Tangy speaks to User 4."] * 2
-
-
-def live_world(workspace: Workspace, link: FakeLink) -> LiveWorld:
-    return LiveWorld(
-        workspace.activity,
-        PEOPLE,
-        cast(RobotLink, link),
-        workspace.robot,
-        workspace.room,
-        seed=1,
-        names=workspace.names,
-    )
 
 
 def test_a_resumed_live_game_repeats_no_final_visit(workspace: Workspace, learnt: Policy) -> None:
@@ -92,15 +68,7 @@ def test_an_unjudged_card_is_reported_logged_and_counted(
 ) -> None:
     link = FakeLink(PEOPLE)
     link.cards["user2"] = LaidCard(7, marked=1, others=(9,))
-    world = LiveWorld(
-        workspace.activity,
-        PEOPLE,
-        cast(RobotLink, link),
-        workspace.robot,
-        workspace.room,
-        seed=1,
-        names=workspace.names,
-    )
+    world = live_world(workspace, link)
     world.cards.dealt.deal({"user2": 7})
     game = workspace.supervision(learnt, 1, world=world)
     played = LiveGames(workspace, game)

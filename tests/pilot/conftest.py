@@ -36,6 +36,7 @@ from textual.keys import _character_to_key
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.person import Person, load_people
@@ -45,8 +46,11 @@ from tangy_profiles.state import FRONT
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.app import TangyApp
+from tangy_tui.ui.program import Program
 from tangy_tui.ui.terminal import TerminalKind
 from tests.interaction.gaps import learnt
+from tests.pilot.live_games import HeldLink, held_world, live_program
+from tests.support.clocks import StillClock as StillClock
 from tests.support.waiting import PATIENCE
 
 SMALL = (80, 24)
@@ -145,21 +149,6 @@ class TangyPilot(Pilot[None]):
     def type(self, *keys: str, at: float | None = None) -> None:
         """Type keys at once; they have arrived after the next `pause`."""
         type_at_once(self.app, *keys, at=at)
-
-
-class StillClock:
-    """A clock that the test advances."""
-
-    def __init__(self, now: float = 0.0) -> None:
-        self.now = now
-
-    def __call__(self) -> float:
-        """Return the time."""
-        return self.now
-
-    def advance(self, seconds: float) -> None:
-        """Advance the clock."""
-        self.now += seconds
 
 
 @dataclass
@@ -323,3 +312,21 @@ def policy(
     """A policy that covers every situation, learnt by few trees."""
     settings = ForestSettings(trees=5)
     return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), settings)
+
+
+@pytest.fixture
+def link() -> HeldLink:
+    """A fake robot process whose behaviours end only when the test allows it."""
+    return HeldLink()
+
+
+@pytest.fixture
+def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
+    """The world of that robot."""
+    return held_world(workspace, link)
+
+
+@pytest.fixture
+def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
+    """A program that opens with the live screen of that world."""
+    return live_program(workspace, world, policy)

@@ -6,9 +6,8 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import replace
 from time import sleep
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.health import OK, DeviceState, Fact, Reading
@@ -19,8 +18,9 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.terminal import TerminalKind
 from tests.hw.links import FakeLink
-from tests.pilot.conftest import StillClock
 from tests.pilot.ears import FakeEars
+from tests.support.clocks import StillClock
+from tests.support.live_worlds import live_world
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -81,20 +81,11 @@ class HeldLink(FakeLink):
         self.state = replace(self.state, health=FakeLink(PEOPLE).state.health, failed="")
 
 
-def live_world(
+def held_world(
     workspace: Workspace, link: HeldLink, kind: type[LiveWorld] = LiveWorld
 ) -> LiveWorld:
-    """Make the world of a robot."""
-    return kind(
-        workspace.activity,
-        tuple(workspace.names),
-        cast(RobotLink, link),
-        workspace.robot,
-        workspace.room,
-        seed=1,
-        names=workspace.names,
-        pace=0.0,  # its time stands still between actions
-    )
+    """Make the world of a robot whose time stands still between actions."""
+    return live_world(workspace, link, kind, pace=0.0)
 
 
 def live_program(

@@ -21,7 +21,7 @@ from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.screens.set_up import SetUpScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, screen_text
-from tests.pilot.live_games import HeldLink, live, live_world
+from tests.pilot.live_games import HeldLink, held_world, live
 from tests.support.append_body import append_body
 from tests.support.waiting import until_shown
 
@@ -102,7 +102,7 @@ async def test_v_asks_before_a_live_game_on_the_bench(
     @contextmanager
     def bench(_: Workspace, **__: Any) -> Iterator[LiveWorld]:
         opened.append(True)
-        yield live_world(workspace, link)
+        yield held_world(workspace, link)
         opened.append(False)
 
     monkeypatch.setattr(robot_opening, "open_bench", bench)

@@ -17,7 +17,7 @@ from tangy_tui.ui.widgets.fault_banner import FaultBanner
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.pilot.conftest import Run
 from tests.pilot.faults import asked, game_of, kinds_of, playing, sentences
-from tests.pilot.live_games import HeldLink, live, live_program, live_world
+from tests.pilot.live_games import HeldLink, held_world, live, live_program
 from tests.support.waiting import until_shown
 
 
@@ -63,7 +63,7 @@ async def test_an_answered_fault_leaves_the_screen_while_tangy_carries_the_answe
 ) -> None:
     link = HeldLink()
     link.missed.add("user2")
-    async with run(app=live_program(workspace, live_world(workspace, link), policy)) as pilot:
+    async with run(app=live_program(workspace, held_world(workspace, link), policy)) as pilot:
         screen, game = live(pilot), live(pilot).control.supervision
         await until_shown(pilot, lambda: game.steps >= 2)
         link.sign(2)

@@ -21,7 +21,7 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, TangyPilot
-from tests.pilot.live_games import HeldLink, live_world
+from tests.pilot.live_games import HeldLink, held_world
 from tests.support.waiting import until, until_shown
 
 STEPS = 9
@@ -127,7 +127,7 @@ async def test_esc_keeps_the_interrupted_game(interrupted: Workspace, run: Run) 
 async def test_a_new_person_can_be_added_before_a_live_game_resumes(
     workspace: Workspace, learnt: Policy, run: Run
 ) -> None:
-    world = live_world(workspace, HeldLink())
+    world = held_world(workspace, HeldLink())
     supervision = workspace.supervision(learnt, 5, asks=True, world=world)
     supervision.begin()
     while supervision.steps < 2:

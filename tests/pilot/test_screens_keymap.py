@@ -25,7 +25,7 @@ from tangy_tui.ui.screens.people import PeopleScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, TangyPilot
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.pilot.live_games import HeldLink, held_world, live, live_program, paused_after
 from tests.support.waiting import until
 
 LETTERS = (*string.ascii_letters, "slash", "asterisk", "full_stop", "less_than_sign")
@@ -146,7 +146,7 @@ async def test_no_letter_changes_a_live_game_without_a_question(
     run: Run, taught: Workspace
 ) -> None:
     link = HeldLink()
-    world = live_world(taught, link)
+    world = held_world(taught, link)
     async with run(app=live_program(taught, world, learn(taught)), size=ROOM) as pilot:
         await paused_after(pilot, link, 3)
         screen = live(pilot)

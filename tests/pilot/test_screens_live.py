@@ -38,26 +38,11 @@ from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import SMALL, screen_text
 from tests.pilot.ears import FakeEars
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, settled
+from tests.pilot.live_games import HeldLink, live, live_program, paused_after, settled
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
-
-
-@pytest.fixture
-def link() -> HeldLink:
-    return HeldLink()
-
-
-@pytest.fixture
-def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
-    return live_world(workspace, link)
-
-
-@pytest.fixture
-def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
-    return live_program(workspace, world, policy)
 
 
 async def asked_about_the_next(pilot: TangyPilot) -> None:

@@ -10,7 +10,6 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import GoOn, Pause
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.policy import Policy
 from tangy_tui.text.cards import NO_NUMBER, TYPE_NUMBER, in_sight_words
 from tangy_tui.ui.dialogs.card_number import CardNumberDialog
 from tangy_tui.ui.dialogs.choose import ChooseDialog
@@ -19,26 +18,11 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.widgets.log_view import LogView
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import screen_text
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.pilot.live_games import HeldLink, live, paused_after
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
-
-
-@pytest.fixture
-def link() -> HeldLink:
-    return HeldLink()
-
-
-@pytest.fixture
-def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
-    return live_world(workspace, link)
-
-
-@pytest.fixture
-def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
-    return live_program(workspace, world, policy)
 
 
 def told(pilot: TangyPilot) -> str:

@@ -21,7 +21,7 @@ from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.widgets.log_view import LogView
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.pilot.live_games import HeldLink, held_world, live, live_program, paused_after
 from tests.support.telephone import ANNA, STATION, Line
 from tests.support.waiting import until_shown
 
@@ -39,13 +39,8 @@ class HeldWorld(LiveWorld):
 
 
 @pytest.fixture
-def link() -> HeldLink:
-    return HeldLink()
-
-
-@pytest.fixture
 def program(workspace: Workspace, link: HeldLink, policy: Policy) -> Program:
-    return live_program(workspace, live_world(workspace, link, HeldWorld), policy)
+    return live_program(workspace, held_world(workspace, link, HeldWorld), policy)
 
 
 def seen(pilot: TangyPilot) -> str:

@@ -23,7 +23,7 @@ from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.live import LiveScreen
 from tests.pilot.conftest import Run, StillClock, TangyPilot
-from tests.pilot.live_games import HeldLink, live, live_world, paused_after
+from tests.pilot.live_games import HeldLink, held_world, live, paused_after
 from tests.support.waiting import until_shown
 
 
@@ -53,7 +53,7 @@ class Robot:
         link.most = 3  # calls, at most
         self.links.append(link)
         try:
-            yield live_world(self.workspace, link)
+            yield held_world(self.workspace, link)
         finally:
             if self.closing is not None:
                 self.closing.wait()

@@ -23,9 +23,9 @@ from tangy_tui.ui.widgets.block_picture import BLOCK
 from tests.pilot.conftest import SMALL, screen_text
 from tests.pilot.live_games import (
     HeldLink,
+    held_world,
     live,
     live_program,
-    live_world,
     paused_after,
     settled,
 )
@@ -107,7 +107,7 @@ def row(pilot: TangyPilot, label: str) -> str:
 async def test_key_7_shows_the_devices_of_the_robot(
     run: Run, workspace: Workspace, policy: Policy, link: SeeingLink
 ) -> None:
-    program = live_program(workspace, live_world(workspace, link), policy)
+    program = live_program(workspace, held_world(workspace, link), policy)
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
         assert "TANGY live" in screen_text(pilot.app)

@@ -31,7 +31,7 @@ from tangy_tui.ui.widgets.set_up_list import SetUpList
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.pilot.conftest import LARGE, Run, StillClock
-from tests.pilot.live_games import HeldLink, live_world
+from tests.pilot.live_games import HeldLink, held_world
 from tests.support.waiting import until_shown
 
 
@@ -45,7 +45,7 @@ class Setting:
         self.begins: list[bool] = []
 
     async def switch_on(self) -> LiveWorld | None:
-        return live_world(self.workspace, self.link)
+        return held_world(self.workspace, self.link)
 
     def program(self) -> Program:
         async def start(program: Program) -> None:
@@ -136,7 +136,7 @@ async def test_leaving_asks_only_if_choices_would_be_lost(run: Run, setting: Set
 
 async def test_unready_parts_are_reported_before_the_game(run: Run, setting: Setting) -> None:
     setting.link.ail("voice", STALE)
-    setting.setup.world = live_world(setting.workspace, setting.link)
+    setting.setup.world = held_world(setting.workspace, setting.link)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         assert [check.name for check in setting.setup.not_ready] == ["robot"]
@@ -151,7 +151,7 @@ async def test_unready_parts_are_reported_before_the_game(run: Run, setting: Set
 
 def test_a_missing_tablet_is_no_fault_of_the_robot(setting: Setting) -> None:
     setting.link.ail("screen", STALE)
-    setting.setup.world = live_world(setting.workspace, setting.link)
+    setting.setup.world = held_world(setting.workspace, setting.link)
     robot, *_ = setting.setup.checks()
     assert (robot.name, robot.state) == ("robot", "ready")
 
@@ -173,7 +173,7 @@ async def test_a_stop_during_preparation_cancels_the_game(run: Run, setting: Set
 
 
 async def test_the_sound_is_ready_after_its_test(run: Run, setting: Setting) -> None:
-    setting.setup.world = live_world(setting.workspace, setting.link)
+    setting.setup.world = held_world(setting.workspace, setting.link)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         await pilot.press("end", "enter")
@@ -206,7 +206,7 @@ async def test_the_readiness_stays_visible_with_many_people(run: Run, data_folde
     workspace = Workspace(data_folder, users=24)
     setting = Setting(workspace)
     setting.link.ail("voice", STALE)
-    setting.setup.world = live_world(workspace, setting.link)
+    setting.setup.world = held_world(workspace, setting.link)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         await pilot.press("home")
@@ -247,7 +247,7 @@ async def test_a_wide_page_draws_everybody_at_their_seats(run: Run, setting: Set
 
 
 async def test_messages_cover_no_line_of_the_page(run: Run, setting: Setting) -> None:
-    setting.setup.world = live_world(setting.workspace, setting.link)
+    setting.setup.world = held_world(setting.workspace, setting.link)
     async with run(app=setting.program()) as pilot:
         await opened(pilot)
         shown = pilot.lines()[2:]
@@ -264,7 +264,7 @@ async def test_messages_cover_no_line_of_the_page(run: Run, setting: Setting) ->
 async def test_showing_a_card_to_the_robot_marks_a_person_as_present(
     run: Run, setting: Setting
 ) -> None:
-    setting.setup.world = live_world(setting.workspace, setting.link)
+    setting.setup.world = held_world(setting.workspace, setting.link)
     setting.setup.toggle("user2")
     setting.setup.look_at_card = lambda: "17"  # type: ignore[method-assign]
     async with run(app=setting.program()) as pilot:
@@ -281,7 +281,7 @@ async def test_showing_a_card_to_the_robot_marks_a_person_as_present(
 
 
 async def test_a_recognised_face_marks_a_person_as_present(run: Run, setting: Setting) -> None:
-    world = setting.setup.world = live_world(setting.workspace, setting.link)
+    world = setting.setup.world = held_world(setting.workspace, setting.link)
     world.knows_faces = True
     setting.setup.toggle("user3")
     setting.setup.world.commands.do = lambda *_, **__: {"person": "user3"}  # type: ignore
@@ -293,7 +293,7 @@ async def test_a_recognised_face_marks_a_person_as_present(run: Run, setting: Se
 
 
 async def test_keys_are_answered_while_tangy_looks(run: Run, setting: Setting) -> None:
-    world = setting.setup.world = live_world(setting.workspace, setting.link)
+    world = setting.setup.world = held_world(setting.workspace, setting.link)
     world.knows_faces = True
     looks = Event()
 

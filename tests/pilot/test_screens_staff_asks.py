@@ -32,26 +32,11 @@ from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.app.test_interruption import Robot
 from tests.pilot.conftest import SMALL, StillClock, screen_text
 from tests.pilot.faults import game_of, halting, playing
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.pilot.live_games import HeldLink, live, paused_after
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run
-
-
-@pytest.fixture
-def link() -> HeldLink:
-    return HeldLink()
-
-
-@pytest.fixture
-def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
-    return live_world(workspace, link)
-
-
-@pytest.fixture
-def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
-    return live_program(workspace, world, policy)
 
 
 @pytest.mark.slow

@@ -10,26 +10,15 @@ from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.situations import seen_facts
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.scripted_teacher import ScriptedTeacher
-from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, screen_text
+from tests.support.teaching import taught_until
 from tests.support.waiting import until_shown
 
 STAGE = "listen"
-
-
-def listening(workspace: Workspace) -> TeachingSession:
-    """Return a session that waits for an answer about its last step."""
-    session = workspace.teaching("Mary", 1)
-    session.begin()
-    teacher = ScriptedTeacher(session)
-    while not session.demonstration.steps or session.demonstration.steps[-1].state.stage != STAGE:
-        session.apply(teacher.command())
-    return session
 
 
 def rules(workspace: Workspace) -> int:
@@ -42,7 +31,7 @@ async def test_a_key_makes_the_last_step_a_rule_and_undo_removes_it(
     run: Run, tmp_path: Path
 ) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
-    listening(workspace)
+    taught_until(workspace, STAGE)
     session = workspace.teaching("Mary", 1)
     screen = TeachScreen(workspace, session)
     async with run(app=Program(workspace, clock=StillClock()), size=(80, 24)) as pilot:
@@ -65,7 +54,7 @@ async def test_a_key_makes_the_last_step_a_rule_and_undo_removes_it(
 @pytest.mark.slow
 async def test_esc_makes_no_rule_and_a_word_makes_one(run: Run, tmp_path: Path) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
-    listening(workspace)
+    taught_until(workspace, STAGE)
     screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.app.push_screen(screen)
@@ -89,7 +78,7 @@ async def test_a_game_with_cards_offers_no_rule(run: Run, workspace: Workspace) 
 
 async def test_a_small_screen_names_every_missing_stage(run: Run, tmp_path: Path) -> None:
     workspace = Workspace(tmp_path, activity="trivia")
-    listening(workspace)
+    taught_until(workspace, STAGE)
     screen = TeachScreen(workspace, workspace.teaching("Mary", 1))
     async with run(app=Program(workspace, clock=StillClock()), size=(80, 24)) as pilot:
         await pilot.app.push_screen(screen)

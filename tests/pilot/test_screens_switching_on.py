@@ -23,7 +23,7 @@ from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.live import LiveScreen
 from tests.pilot.conftest import Run, StillClock, TangyPilot
-from tests.pilot.live_games import HeldLink, live_world, paused_after
+from tests.pilot.live_games import HeldLink, held_world, paused_after
 from tests.support.waiting import until, until_shown
 
 
@@ -49,7 +49,7 @@ class Robot:
             if self._wrong:
                 raise DeviceError(self._wrong)
             self.did.append("is on")
-            yield live_world(self._workspace, self.link)
+            yield held_world(self._workspace, self.link)
         finally:
             self.did.append("is off")
 

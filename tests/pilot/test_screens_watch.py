@@ -37,6 +37,7 @@ from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.pilot.conftest import LARGE, SMALL, Run
+from tests.support.games import watched_game
 from tests.support.waiting import until, until_shown
 
 STAGES = {**PHASES, "idle": OVER_NOW}
@@ -51,13 +52,7 @@ def data_folder(taught: Path) -> Path:
 @pytest.fixture
 def control(workspace: Workspace, learnt: Policy) -> GameController:
     """A game after five steps that other consoles may watch."""
-    control = scripted_controller(workspace.supervision(learnt, 5))
-    control.begin()
-    while control.supervision.steps < 5:
-        go_on_by_script(control, expert=False)
-    workspace.door.attach(control)
-    workspace.door.open()
-    return control
+    return watched_game(workspace, learnt)
 
 
 @pytest.fixture

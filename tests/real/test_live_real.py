@@ -8,6 +8,8 @@ import re
 import signal
 import subprocess
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -86,28 +88,26 @@ def test_faults_on_the_bench_are_diagnosed_and_recovered(workspace: Workspace) -
         game.leave()
 
 
-def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
-    command = [
-        TANGY,
-        "live",
-        "--bench",
-        "--begin",
-        "--pace",
-        "3",
-        "--seed",
-        "5",
-        "--data",
-        str(folder),
-    ]
-    terminal = Terminal(command)
+@contextmanager
+def shown_game(folder: Path, seed: int, columns: int = 80, lines: int = 24) -> Iterator[Terminal]:
+    """Play on the bench in a terminal, with its steps in place of the staff view."""
+    words = ("live", "--bench", "--begin", "--pace", "3", "--seed", str(seed))
+    terminal = Terminal([TANGY, *words, "--data", str(folder)], columns=columns, lines=lines)
     try:
         if "Is all well now?" in terminal.until(
             lambda text: "greet everyone" in text or "well" in text
         ):
             terminal.type("y")
         terminal.until("Now")
-        terminal.type("u")  # the steps in place of the staff view
+        terminal.type("u")
         terminal.until("call number")
+        yield terminal
+    finally:
+        terminal.end()
+
+
+def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
+    with shown_game(folder, 5) as terminal:
         terminal.type("h")
         terminal.until("Who needs help?")
         terminal.type("\r")
@@ -122,8 +122,6 @@ def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
         terminal.settle()  # a key from before the question does not answer it
         terminal.type("y")
         assert terminal.wait() == 0
-    finally:
-        terminal.end()
 
 
 def robot_process_of(program: int) -> int:
@@ -141,27 +139,7 @@ def robot_process_of(program: int) -> int:
 
 
 def test_a_robot_process_frozen_for_four_seconds_opens_one_dialog(folder: Path) -> None:
-    command = [
-        TANGY,
-        "live",
-        "--bench",
-        "--begin",
-        "--pace",
-        "3",
-        "--seed",
-        "6",
-        "--data",
-        str(folder),
-    ]
-    terminal = Terminal(command, columns=100, lines=40)
-    try:
-        if "Is all well now?" in terminal.until(
-            lambda text: "greet everyone" in text or "well" in text
-        ):
-            terminal.type("y")
-        terminal.until("Now")
-        terminal.type("u")  # the steps in place of the staff view
-        terminal.until("call number")
+    with shown_game(folder, 6, columns=100, lines=40) as terminal:
         robot = robot_process_of(terminal.process.pid)
         os.kill(robot, signal.SIGSTOP)
         try:
@@ -186,8 +164,6 @@ def test_a_robot_process_frozen_for_four_seconds_opens_one_dialog(folder: Path) 
             assert len(read_faults(workspace.store, last)) == 1
         finally:
             workspace.close()
-    finally:
-        terminal.end()
 
 
 def test_a_robot_without_drivers_is_refused_with_advice(folder: Path) -> None:

@@ -157,16 +157,8 @@ def test_keys_work_while_sound_comes_from_standard_input(
     words = ("teach", "--teacher", "Ada", "--hands-free", "--mic", "-", "--data", data)
     tmux.run("cat", str(file), "|", tangy, *words)
     tmux.until("Did you say: greet everyone?")
-    tmux.until(lambda text: _confirmed(tmux, text))
+    tmux.confirm("-> greet everyone")
     tmux("send-keys", "C-c")
-
-
-def _confirmed(tmux: Tmux, text: str) -> bool:
-    if "-> greet everyone" in text:
-        return True
-    if "Did you say" in text:
-        tmux("send-keys", "y")
-    return False
 
 
 @pytest.mark.slow

@@ -7,8 +7,11 @@ from typing import NamedTuple
 
 from tangy_profiles.state import FRONT
 from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded
+from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -26,6 +29,17 @@ def play(game: Supervision, *, expert: bool = True) -> list[Event]:
     while not game.over:
         events += go_on_by_script(control, expert=expert)
     return events
+
+
+def watched_game(workspace: Workspace, learnt: Policy) -> GameController:
+    """Return a game after five steps that other consoles may watch."""
+    control = scripted_controller(workspace.supervision(learnt, 5))
+    control.begin()
+    while control.supervision.steps < 5:
+        go_on_by_script(control, expert=False)
+    workspace.door.attach(control)
+    workspace.door.open()
+    return control
 
 
 def until(

@@ -223,6 +223,19 @@ class Tmux:
                 os.read(self._reader, 65536)
         return text
 
+    def confirm(self, done: str) -> None:
+        """Press y until the question accepts it, and the window shows that it was `done`.
+
+        In its guard time a question accepts no key.
+        """
+
+        def confirmed(text: str) -> bool:
+            if done not in text and "Did you say" in text:
+                self("send-keys", "y")
+            return done in text
+
+        self.until(confirmed)
+
     def end(self) -> None:
         """End the server."""
         with suppress(subprocess.CalledProcessError):
