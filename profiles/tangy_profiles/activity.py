@@ -351,7 +351,7 @@ def _behaviours(top: Table, strategies: dict[str, str], states: list[str]) -> di
         entry.close()
     if not behaviours:
         raise top.wrong("behaviours", "must hold at least one behaviour.")
-    if not any(b.effect == "finish" for b in behaviours.values()):
+    if not any(b.ends for b in behaviours.values()):
         raise top.wrong("behaviours", "one must have the effect 'finish', or no game would end.")
     return behaviours
 

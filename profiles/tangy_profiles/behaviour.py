@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import cast
 
+from tangy_profiles import effects
 from tangy_profiles.effects import EFFECTS, Effect
 from tangy_profiles.reading import Table
 
@@ -52,6 +53,66 @@ class Behaviour:
     def attends(self) -> bool:
         """Whether it is directed at one person rather than at the group."""
         return self.place == "attended" or bool(self.to)
+
+    @property
+    def calls(self) -> bool:
+        """Whether it calls the next number."""
+        return self.effect in effects.CALLS
+
+    @property
+    def visits(self) -> bool:
+        """Whether the robot goes to a person."""
+        return self.effect in effects.VISITS
+
+    @property
+    def returns(self) -> bool:
+        """Whether the robot goes back to its place before the group."""
+        return self.effect in effects.RETURNS
+
+    @property
+    def drives(self) -> bool:
+        """Whether the robot drives."""
+        return self.effect in effects.DRIVES
+
+    @property
+    def clears_marks(self) -> bool:
+        """Whether the attended person is asked to take markers off."""
+        return self.effect in effects.CLEARS_MARKS
+
+    @property
+    def sets_marks(self) -> bool:
+        """Whether the attended person is asked to mark numbers."""
+        return self.effect in effects.SETS_MARKS
+
+    @property
+    def corrects(self) -> bool:
+        """Whether the attended person is asked to correct the card."""
+        return self.effect in effects.CORRECTS
+
+    @property
+    def shows_card(self) -> bool:
+        """Whether the attended person is asked to move the card into view."""
+        return self.effect in effects.SHOWS_CARD
+
+    @property
+    def about_card(self) -> bool:
+        """Whether the attended person is asked to do something with the card."""
+        return self.effect in effects.ABOUT_CARD
+
+    @property
+    def ends(self) -> bool:
+        """Whether it ends the game."""
+        return self.effect in effects.ENDS
+
+    @property
+    def only_talks(self) -> bool:
+        """Whether nothing changes but what was said and shown."""
+        return self.effect in effects.ONLY_TALKS
+
+
+def calling(behaviours: Mapping[str, Behaviour]) -> set[str]:
+    """Return the names of the behaviours that call a number."""
+    return {name for name, behaviour in behaviours.items() if behaviour.calls}
 
 
 @dataclass(frozen=True)

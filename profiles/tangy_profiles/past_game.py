@@ -12,7 +12,7 @@ from datetime import datetime
 from typing import Protocol
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.behaviour import Action
+from tangy_profiles.behaviour import Action, calling
 from tangy_profiles.declared.memory import GameMemory, with_player
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, GameStep
@@ -180,10 +180,10 @@ class PastGame:
         They stand in the order of the queue, as far as the log has it.
         """
         requests, since, over = OpenRequests(), dict[str, float](), 0.0
+        calls = calling(activity.behaviours)
         for number, (step, over) in enumerate(zip(self.steps, self.clock, strict=True)):
             self._change(requests.change, self.beginning.game, number)
-            behaviour = activity.behaviours.get(step.behaviour)
-            called = behaviour is not None and behaviour.effect == "draw" and step.completed
+            called = step.behaviour in calls and step.completed
             requests.step(step.state, step.after or step.state, called=called)
             seen = {user.id for user in step.state.users if user.request == "AR"}
             begun = over - (step.seconds or 0.0)
@@ -245,7 +245,7 @@ class PastGame:
 
     def visited(self, activity: Activity) -> dict[str, int]:
         """Return the number of calls before each person's last visit; see `PlannedGame`."""
-        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        draws = calling(activity.behaviours)
         visited, calls = dict[str, int](), 0
         mine = [one for one in self.changes if one.game == self.beginning.game]
         last = next((n for n, one in enumerate(mine) if one.what == "all called"), len(mine))
@@ -263,7 +263,7 @@ class PastGame:
 
     def since_call(self, activity: Activity) -> float:
         """Return the duration of the steps after the last call, in s."""
-        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        draws = calling(activity.behaviours)
         seconds = 0.0
         for step in reversed(self.steps):
             if step.behaviour in draws:
@@ -273,7 +273,7 @@ class PastGame:
 
     def called(self, activity: Activity) -> list[int]:
         """Return the called numbers that count, in order."""
-        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        draws = calling(activity.behaviours)
         called = [n for step in self.steps if step.behaviour in draws for n in step.numbers]
         for number in self.taken_back:  # a number that was called again stays
             if number in called:

@@ -155,7 +155,7 @@ class Tracker:
             return
         name = behaviour.name
         self._counts[name] += 1
-        if behaviour.effect == "draw":
+        if behaviour.calls:
             self.visits, self.calls_first = 0, max(0, self.calls_first - 1)
         for pair in self._since:
             if name == pair[0]:

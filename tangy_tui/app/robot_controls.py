@@ -103,7 +103,7 @@ class RobotControls:
         if self._robot is None or not (self.paced and decision.sure):
             return False
         behaviour = self._robot.activity.behaviours[decision.behaviour]
-        return behaviour.effect == "draw" and self._robot.calls_in > 0
+        return behaviour.calls and self._robot.calls_in > 0
 
     def do(self, command: CallAgain | AskFor | Tell | HasCard | Drive) -> StaffNote:
         """Carry out a command that needs a real robot.

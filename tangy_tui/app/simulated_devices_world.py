@@ -20,7 +20,6 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_client.response_watch import PATIENCES
 from tangy_hw.robot_client.staff_card_reports import ReportedCard, reported_card
 from tangy_profiles.behaviour import Action
-from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, GameWorld
@@ -226,15 +225,15 @@ class BenchedWorld(LiveWorld):
         beside = tracker.place in tracker.queue
         match kind.shows:
             case injection.DRIVING:
-                return behaviour.effect in DRIVES
+                return behaviour.drives
             case injection.LOOKING if self._never_complies(tracker.place):
                 return False  # nothing is expected of a card whose owner does not do as asked
             case injection.LOOKING:
                 if tracker.seen is None:
-                    return beside and behaviour.effect == "bring card closer"
-                return behaviour.effect in CORRECTS
+                    return beside and behaviour.shows_card
+                return behaviour.corrects
             case injection.ASKING:
-                return beside and behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
+                return beside and behaviour.about_card and tracker.allows(behaviour)
             case injection.CLOSING | injection.WAITING if "requests-silent" in self.present:
                 return False  # no sensor sees whether a sign is up
             case injection.CLOSING:
@@ -244,7 +243,7 @@ class BenchedWorld(LiveWorld):
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:
-                return beside and behaviour.effect in CORRECTS
+                return beside and behaviour.corrects
             case _:
                 return True
 
@@ -265,7 +264,7 @@ class BenchedWorld(LiveWorld):
                 step, lambda kind: kind.name in self.present and self.can_show(kind, action)
             )
         outcome = super().execute(action)
-        if action.behaviour.effect in DRIVES:
+        if action.behaviour.drives:
             self._note_place()
         return outcome
 

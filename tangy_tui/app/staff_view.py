@@ -167,13 +167,13 @@ def _with_facts(person: PersonNow, world: object) -> PersonNow:
     if not isinstance(game, DeclaredGame):
         return person
     declared = game.declaration
-    does = {effect.does for one in declared.behaviours.values() for effect in one.effects}
+    turns = any(behaviour.passes_turn for behaviour in declared.behaviours.values())
     counts = tuple(
         (fact.name, round(game.number(fact, person.id)))
         for fact in declared.facts.values()
         if fact.kind == "count" and fact.per_player
     )
-    turn = "next turn" in does and game.players[game.turn] == person.id
+    turn = turns and game.players[game.turn] == person.id
     return replace(
         person,
         counts=counts,

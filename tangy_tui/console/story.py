@@ -198,7 +198,7 @@ class Story:
         return command.text in {
             phrase
             for behaviour in self._activity.behaviours.values()
-            if behaviour.effect == "go to user"
+            if behaviour.visits
             for phrase in behaviour.phrases
         }
 

@@ -162,7 +162,7 @@ class Inducer:
             shows: returns whether a kind could be observed if it occurred now.
         """
         new = any(kind.code not in self._treated for kind in there)
-        if self.held or new or action.behaviour.effect == "finish":
+        if self.held or new or action.behaviour.ends:
             return ""
         had = [fault.kind.name for fault in self.induced]
         for planned in self.due:

@@ -119,7 +119,7 @@ class StyledTeacher:
         at = int(self._rng.random() * len(phrases)) if self._style.varied else self._style.phrase
         phrase = phrases[at % len(phrases)]
         asking = self._teaching.world.scene().requests
-        if behaviour.effect == "go to user" and asking:
+        if behaviour.visits and asking:
             seats = self._teaching.people
             person = self._style.order(asking, seats, state.place, self._rng)
             phrase = f"{behaviour.phrases[0]} {seats.index(person) + 1}"

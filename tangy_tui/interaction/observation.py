@@ -148,4 +148,4 @@ def refused(
     if outcome.response is not None:
         return not outcome.response.followed
     person = before.attended
-    return behaviour.effect != "none" and after.user(person) == before.user(person)
+    return not behaviour.only_talks and after.user(person) == before.user(person)

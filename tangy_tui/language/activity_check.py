@@ -103,7 +103,7 @@ def _never(rule: StageRule, earlier: Sequence[StageRule], activity: Activity) ->
             return f"it is always before or after {other.behaviour!r}, which comes first"
         if _covers(other, rule):
             return f"{other.stage!r} always holds first"
-    if rule.condition == "after" and activity.behaviours[rule.behaviour].effect == "finish":
+    if rule.condition == "after" and activity.behaviours[rule.behaviour].ends:
         return f"after {rule.behaviour!r} the activity is over"
     return None
 

@@ -91,7 +91,7 @@ class Phrasebook:
         `learnt` returns the intent model of the activity; it is called for the first text that is
         not a phrase. Without it, only phrases and keywords are understood.
         """
-        self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
+        self._to_people = {b.name for b in activity.behaviours.values() if b.visits}
         self.people = tuple(person.id for person in people)
         self.game = frozenset(words_of(activity.title))
         self.nouns = {

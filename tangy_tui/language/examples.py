@@ -108,7 +108,7 @@ def _asking(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
 def _by_effect(behaviour: Behaviour, activity: Activity) -> Iterator[str]:
     """Yield sentences that ask for the effect of a behaviour."""
     known = templates()
-    goes = behaviour.effect == "go to user"
+    goes = behaviour.visits
     them, sub = cycle(known["them"]), cycle(known["sub"])
     for form in known["effects"].get(behaviour.effect, ()):
         for who in (SOMEBODY, *_people(behaviour)) if goes else ("",):
@@ -174,7 +174,7 @@ def _without_asking(phrase: str) -> str:
 
 def _things(behaviour: Behaviour, after: frozenset[str]) -> tuple[str, ...]:
     """Return the words after an article in the phrases of a behaviour: "joke"."""
-    if behaviour.effect.startswith("go to"):
+    if behaviour.drives:
         return ()
     found = (
         word

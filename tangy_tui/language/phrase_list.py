@@ -108,7 +108,7 @@ def _ways(phrasebook: Phrasebook, activity: Activity) -> Iterator[BehaviourPhras
             behaviour.question,
             tuple(p.shown for p in own if p.behaviour == behaviour.name),
             tuple(" ".join(words) for words in behaviour.keywords),
-            behaviour.effect == "go to user",
+            behaviour.visits,
         )
 
 

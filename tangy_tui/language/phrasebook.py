@@ -95,7 +95,7 @@ class Phrases:
             self._add_keywords(behaviour)
             if behaviour.to:
                 self._add_addressees(behaviour)
-            elif behaviour.effect == "go to user":
+            elif behaviour.visits:
                 self._add_people(behaviour)
         self.pronunciations = self._read_pronunciations(activity, people)
         self.sources: dict[str, Literal["activity", "person"]]
@@ -173,7 +173,7 @@ class Phrases:
         for place, entry in enumerate(behaviour.keywords):
             words = words_of(" ".join(entry))
             forms: list[tuple[Words, str | None]] = [(words, None)]
-            if behaviour.effect == "go to user":
+            if behaviour.visits:
                 forms += [((*words, number), user) for number, user in self.numbers.items()]
                 called = (self.names | self.seats).items()
                 forms += [((*words[:-1], *name), user) for name, user in called]

@@ -9,7 +9,7 @@ from tangy_profiles.state import Situation
 
 def ending(activity: Activity) -> list[str]:
     """Return the behaviours that end the activity."""
-    return [name for name, one in activity.behaviours.items() if one.effect == "finish"]
+    return [name for name, one in activity.behaviours.items() if one.ends]
 
 
 def due_instead(activity: Activity, situation: Situation, behaviour: str) -> str:

@@ -114,7 +114,7 @@ class OwnPhrases:
     def wording(self, behaviour: str) -> str:
         """Return the unclear words that led to this behaviour; "" if there are none to keep."""
         words, self._unclear = self._unclear, ""
-        goes = self._activity.behaviour(behaviour).effect == "go to user"  # it names one person
+        goes = self._activity.behaviour(behaviour).visits  # it names one person
         if goes or not _can_be_kept(words):
             return ""
         known = {*_noted(self._store, self._activity.name, self._teacher)}

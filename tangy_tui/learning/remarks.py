@@ -7,12 +7,12 @@ may have left by the time Tangy learns from the demonstrations.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 from tangy_profiles.activity import Activity, StageRule
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.demonstration import Step
-from tangy_profiles.effects import Effect
 from tangy_profiles.state import FRONT, Outcome, Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import DemonstratedStep
@@ -187,13 +187,13 @@ class Remarks:
 
     def _goes(self, shown: DemonstratedStep) -> bool:
         """Return whether a step goes to a person: it may be right for another person too."""
-        return self._activity.behaviour(shown.step.behaviour).effect == "go to user"
+        return self._activity.behaviour(shown.step.behaviour).visits
 
     def _overlooked(self, shown: DemonstratedStep, *, over: bool) -> Remark | None:
         step, activity = shown.step, self._activity
         state, behaviour = step.state, activity.behaviour(step.behaviour)
         target = step.target
-        if behaviour.effect == "go to user" and target is not None:
+        if behaviour.visits and target is not None:
             asked = all(user.request == "AR" for user in state.users if user.id == target)
             if asked or not self._is_news("person", state.situation):
                 return None
@@ -241,13 +241,13 @@ class Remarks:
             case "count":
                 return behaviour.name == rule.behaviour  # continues as if nothing were due
             case "beside requester":
-                leaves = not behaviour.attends and behaviour.effect != "go to front"
+                leaves = not behaviour.attends and not behaviour.returns
                 return leaves or self._ends_wrongly(shown.step)
             case "requested or away":
                 waits = step.state.situation.request == "AR" or step.state.place != FRONT
-                return waits and behaviour.effect not in ("go to user", "go to front")
+                return waits and not behaviour.drives
             case "after":
-                return behaviour.effect == "draw"
+                return behaviour.calls
             case _:
                 return False
 
@@ -272,15 +272,14 @@ class Remarks:
                 return self._activity.expected.get(shown.step.state.situation)
             case "requested or away":
                 asked = shown.step.state.situation.request == "AR"
-                return self._with_effect("go to user" if asked else "go to front")
+                return self._first(lambda one: one.visits if asked else one.returns)
             case "after":
-                return self._with_effect("finish")
+                return self._first(lambda one: one.ends)
             case _:
                 return None
 
-    def _with_effect(self, effect: Effect) -> str | None:
-        found = (b.name for b in self._activity.behaviours.values() if b.effect == effect)
-        return next(found, None)
+    def _first(self, wanted: Callable[[Behaviour], bool]) -> str | None:
+        return next((b.name for b in self._activity.behaviours.values() if wanted(b)), None)
 
     def _is_news(self, kind: Kind, situation: Situation) -> bool:
         news = (kind, situation) not in self._told

@@ -325,7 +325,7 @@ class Verifier:
         """Return why a behaviour cannot be done now, or None."""
         if not behaviour.attends:
             return None
-        goes = behaviour.effect == "go to user"
+        goes = behaviour.visits
         nobody: RefusalKind = "nobody asks"
         if behaviour.to:
             if target is not None or EVERYBODY in behaviour.to:

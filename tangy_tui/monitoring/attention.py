@@ -19,8 +19,7 @@ def goes_to_people(activity: Activity | None) -> bool:
     """Return whether Tangy visits people in an activity (True for an unknown activity)."""
     if not isinstance(activity, DeclaredActivity):
         return True
-    effects = (e for b in activity.declaration.behaviours.values() for e in b.effects)
-    return any(effect.does == "go to whom" for effect in effects)
+    return any(behaviour.visits for behaviour in activity.declaration.behaviours.values())
 
 
 def visiting(replays: Iterable[GameReplay]) -> tuple[tuple[str, ...], tuple[str, ...]]:

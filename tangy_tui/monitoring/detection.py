@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.effects import CORRECTS
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import (
     ERROR,
@@ -172,7 +171,7 @@ class Detector:
         self._count(acted, explained)
         if self._refusals[str(acted.state.attended)]:
             evidence |= self.refusals(acted.state.attended)
-        if not explained and acted.action.behaviour.effect in CORRECTS:
+        if not explained and acted.action.behaviour.corrects:
             unchanged = self._count_unchanged(acted, found)
             evidence |= {"person.unchanged": unchanged} if unchanged else {}
         if self._fruitless:
@@ -201,7 +200,7 @@ class Detector:
     def _went_unseen(self, acted: Acted) -> bool:
         """Return whether a person's visible card went out of view during a correction."""
         person, unread = acted.state.attended, self.activity.unread
-        if acted.action.behaviour.effect not in CORRECTS or person is None:
+        if not acted.action.behaviour.corrects or person is None:
             return False
         before, after = acted.state.user(person).activity, acted.after.user(person).activity
         beside = acted.after.place == person == acted.after.attended
@@ -231,7 +230,7 @@ class Detector:
             followed = outcome.response.followed
         else:
             refuses = before.attended in self._refusing
-            followed = not (refuses and behaviour.effect == "bring card closer")
+            followed = not (refuses and behaviour.shows_card)
         return [
             mismatch
             for mismatch in self.effects.mismatches(behaviour.name, before, after, self.activity)

@@ -89,7 +89,7 @@ def done_of(
         right=step.completed and expected == name,
         teacher=step.teacher or "",
         said=said,
-        draws=behaviour is not None and behaviour.effect == "draw",
+        draws=behaviour is not None and behaviour.calls,
         numbers=step.numbers,
         wins=behaviour is not None and bool(behaviour.needs) and step.completed,
         memory=step.memory,

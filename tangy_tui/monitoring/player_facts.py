@@ -126,7 +126,7 @@ def _cleared(done: Done, declaration: Declaration) -> set[str]:
     behaviour = declaration.behaviours.get(done.behaviour)
     if behaviour is None or not done.completed:
         return set()
-    return {effect.fact for effect in behaviour.effects if effect.does == "clear"}
+    return behaviour.clears
 
 
 def _item(declaration: Declaration, memory: GameMemory) -> str:

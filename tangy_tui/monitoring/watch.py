@@ -128,7 +128,7 @@ class FaultWatch:
             return []
         behaviours = self._game.world.activity.behaviours
         behaviour = behaviours.get(self._game.policy.decide(state.situation).behaviour)
-        asks = behaviour is not None and behaviour.persuades and behaviour.effect != "none"
+        asks = behaviour is not None and behaviour.persuades and not behaviour.only_talks
         if not asks or state.place != person:
             return []
         if doubted:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.behaviour import calling
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.reading import plain
 from tangy_profiles.state import FRONT, ActivityState
@@ -66,8 +67,8 @@ def step_words(
         numbers: the numbers of the step, if known.
     """
     target = f" ({name(step.target)})" if step.target else ""
-    draws = [b.name for b in activity.behaviours.values() if b.effect == "draw"]
-    called = f" {activity.deck.label(numbers[0])}" if numbers and step.behaviour in draws else ""
+    calls = step.behaviour in calling(activity.behaviours)
+    called = f" {activity.deck.label(numbers[0])}" if numbers and calls else ""
     done = f"{activity.behaviour_words(step.behaviour)}{called}{target}"
     return f"{moment_words(activity, step.state, name)} -> {done}"
 

@@ -632,7 +632,7 @@ def test_no_number_is_called_from_an_empty_deck(taught: Path) -> None:
         world.tracker.ask(person)
     planned.play()
     acted = [event for event in planned.events if isinstance(event, Acted)]
-    draws = [a for a in acted if a.action.behaviour.effect == "draw"]
+    draws = [a for a in acted if a.action.behaviour.calls]
     assert len(draws) == 75 and all(a.outcome.numbers for a in draws)
     assert "calls first" not in planned.changes() and planned.changes()[-1] == "nobody won"
     planned.workspace.close()

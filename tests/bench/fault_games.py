@@ -11,7 +11,6 @@ from random import Random
 from typing import Any
 
 from tangy_profiles.behaviour import Action
-from tangy_profiles.effects import DRIVES
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, FaultKind, Injection
@@ -46,7 +45,7 @@ class AimingWorld(InducingWorld):
         if self.induced or self.behaviour not in (None, action.behaviour.name):
             return
         self.executed += 1
-        ends = self.behaviour is None and action.behaviour.effect == "finish"
+        ends = self.behaviour is None and action.behaviour.ends
         if self.tracker.step < self.after or ends:  # too late to recover
             return
         kinds = [KINDS[name] for name in self.kinds]
@@ -61,7 +60,7 @@ def apart(kinds: Sequence[FaultKind], action: Action) -> bool:
     A robot that cannot move never arrives, which hides other failures; and while the link is lost,
     momentary events cannot be observed.
     """
-    held = any(kind.holds for kind in kinds) and action.behaviour.effect in DRIVES
+    held = any(kind.holds for kind in kinds) and action.behaviour.drives
     deaf = any(kind.holds and kind.blinds for kind in kinds)
     return not any(
         (held and kind.shows == MOVING_ON) or (deaf and kind.shows in (MOVING_ON, WAITING))

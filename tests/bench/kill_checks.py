@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import cast
 
 from tangy_profiles.activity import load_activity
+from tangy_profiles.behaviour import calling
 from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.people_records import ResponseGiven
@@ -100,7 +101,7 @@ def compare(folder: Path, world: GameWorld, found: Found) -> None:
         past.follow(tracker, lambda change: None)
         if tracker.state() != last:
             found.differs("state by the tracker")
-        draws = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        draws = calling(activity.behaviours)
         called = [n for step in past.steps if step.behaviour in draws for n in step.numbers]
         if past.called(activity) != called:
             found.differs("calls")
@@ -163,7 +164,7 @@ def compare_order(events: list[object], whole: list[object], found: Found) -> No
 
 def calls_in(events: Sequence[object]) -> list[int]:
     """Return the numbers that were called in a game, in order."""
-    draws = {b.name for b in load_activity("bingo").behaviours.values() if b.effect == "draw"}
+    draws = calling(load_activity("bingo").behaviours)
     return [
         n for step in steps_in(events) if step[0] in draws for n in cast(tuple[int, ...], step[3])
     ]

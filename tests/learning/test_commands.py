@@ -140,7 +140,7 @@ class TestUnderstanding:
         book = Phrasebook(lanterns, people)
         for behaviour in lanterns.behaviours.values():
             for phrase in behaviour.phrases:
-                goes = behaviour.effect == "go to user"
+                goes = behaviour.visits
                 noun = phrase.split()[-1]
                 assert book.stranger(f"{phrase} 9") == (f"{noun} 9" if goes else None)
         assert Phrasebook(lanterns, ()).stranger("go to user 9") is None

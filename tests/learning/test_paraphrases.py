@@ -131,7 +131,7 @@ def test_the_model_of_a_new_activity_is_learnt_from_its_phrases(
     intents = Intents(tmp_path)
     book = Phrasebook(lanterns, PEOPLE, intents.model)
     for behaviour in lanterns.behaviours.values():
-        if behaviour.effect == "none":
+        if behaviour.only_talks:
             found = book.understand(f"it is time to {behaviour.phrases[0]} I think")
             assert found is not None and found.behaviour == behaviour.name
     assert len(list(tmp_path.glob("*.json"))) == 1

@@ -149,7 +149,7 @@ def asked(events: list[Event], person: str) -> int:
     for event in events:
         if isinstance(event, Acted):
             response, behaviour = event.outcome.response, event.action.behaviour
-            asks = behaviour.persuades and behaviour.effect != "none"
+            asks = behaviour.persuades and not behaviour.only_talks
             here = event.state.attended == person == event.after.place
             found += asks and here and not (response and response.followed)
         elif isinstance(event, Moved) and event.move.kind == "asked":

@@ -57,7 +57,7 @@ def test_a_refused_request_cannot_show_a_stuck_sign(
     mending = next(
         behaviour
         for behaviour in world.activity.behaviours.values()
-        if behaviour.closes == "when correct" and behaviour.effect != "clear wrong marks"
+        if behaviour.closes == "when correct" and not behaviour.clears_marks
     )
     world.tracker.ask(person)
     world.tracker.arrive(person)

@@ -136,10 +136,10 @@ def test_a_tolerated_fault_is_reported_once_until_it_ends(supervise: Supervise) 
 
 
 def test_spoken_requests_work_while_the_request_sensor_is_silent(supervise: Supervise) -> None:
-    visits = sum(a.action.behaviour.effect == "go to user" for a in acts(play(supervise(seed=3))))
+    visits = sum(a.action.behaviour.visits for a in acts(play(supervise(seed=3))))
     silent = acts(play(supervise("requests-silent@3", seed=3)))
     assert visits
-    assert sum(act.action.behaviour.effect == "go to user" for act in silent) >= visits - 1
+    assert sum(act.action.behaviour.visits for act in silent) >= visits - 1
 
 
 def test_the_expert_is_asked_without_a_teacher(supervise: Supervise) -> None:
@@ -327,7 +327,7 @@ def test_every_game_ends_and_no_behaviour_runs_during_a_halt(
         events = play(game, expert=expert)
         stopped = ended(events).stopped
         last = acts(events)[-1].action.behaviour if acts(events) else None
-        assert stopped or (last is not None and last.effect == "finish")
+        assert stopped or (last is not None and last.ends)
         told = [fault.document() for fault in game.faults]
         kept = [f.document() for f in read_faults(workspace.store, game.game.game)]
         assert kept == told  # the log is the truth

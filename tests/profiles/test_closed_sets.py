@@ -11,6 +11,7 @@ from typing import get_args
 
 import pytest
 
+from tangy_profiles import effects
 from tangy_profiles.effects import EFFECTS
 from tangy_profiles.health import STATES, DeviceState
 from tangy_profiles.persuading import PERSUASION_METHODS, PersuasionConfig
@@ -41,6 +42,20 @@ def places(attribute: str) -> Iterator[tuple[str, int, set[str]]]:
                 words = [part.value for part in parts if isinstance(part, ast.MatchValue)]
                 found = {word.value for word in words if isinstance(word, ast.Constant)}
                 yield path.relative_to(ROOT).as_posix(), node.lineno, set(map(str, found))
+
+
+def comparisons(attributes: Collection[str]) -> Iterator[tuple[str, int, str]]:
+    """Yield the places where the program compares one of some attributes."""
+    tops = [ROOT / top for top in ("hw", "profiles", "sim", "tangy_tui")]
+    for path in sorted(path for top in tops for path in top.rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        if not re.search(rf"\.({'|'.join(attributes)})\b", source):
+            continue
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Compare):
+                for one in (node.left, *node.comparators):
+                    if isinstance(one, ast.Attribute) and one.attr in attributes:
+                        yield one.attr, node.lineno, path.relative_to(ROOT).as_posix()
 
 
 @cache
@@ -74,6 +89,28 @@ def test_every_effect_is_implemented_by_both_worlds_and_the_bench(effect: str) -
 
 def test_no_world_implements_an_unknown_effect() -> None:
     assert {word for _, _, told in matches() for word in told} == set(EFFECTS)
+
+
+def test_every_effect_answers_a_question_of_a_behaviour() -> None:
+    groups = (value for name, value in vars(effects).items() if name.isupper())
+    questions = [set(group) for group in groups if group is not EFFECTS]
+    assert set().union(*questions) == set(EFFECTS)
+
+
+DECLARED_IN = {
+    "effect": ("profiles/tangy_profiles/behaviour.py",),
+    "does": ("profiles/tangy_profiles/declared/",),
+}
+"""Where effects may be compared, of activities with cards and of those by facts."""
+
+
+def test_effects_are_compared_only_where_they_are_declared() -> None:
+    found = [
+        f"{path}:{line} asks for {attribute!r}"
+        for attribute, line, path in comparisons(tuple(DECLARED_IN))
+        if not path.startswith(DECLARED_IN[attribute])
+    ]
+    assert found == []
 
 
 @pytest.mark.parametrize("name", PERSUASION_METHODS)

@@ -95,28 +95,28 @@ class Player:
     def _do(self, behaviour: Behaviour, attended: str | None) -> None:
         world, tracker = self.world, self.tracker
         name = next((p.name for p in load_people(8) if p.id == attended), "")
-        if behaviour.effect == "draw":
+        if behaviour.calls:
             say(world, behaviour.name, "", self._order[len(world.people.game.called)])
             world.step(6.0)
-        elif behaviour.effect in ("go to user", "go to front"):
+        elif behaviour.drives:
             say(world, behaviour.name, name)
             place = attended or FRONT
             assert drive_to(world, place)
             assert world.people.place == place
             tracker.arrive(place)
-        elif behaviour.effect in ("clear wrong marks", "set missing marks"):
+        elif behaviour.corrects:
             player = world.people.sitters[tracker.place].player
             wrong = player.marked & ~player.called
             missing = player.called & ~player.marked
-            mask = wrong if behaviour.effect == "clear wrong marks" else missing
+            mask = wrong if behaviour.clears_marks else missing
             say(world, behaviour.name, name, *player.cells(mask))
-            if behaviour.effect == "clear wrong marks":
+            if behaviour.clears_marks:
                 self._wait(lambda: not player.marked & wrong)
             else:
                 self._wait(lambda: not missing & ~player.marked)
         else:
             say(world, behaviour.name, name)
-            if behaviour.effect == "bring card closer":
+            if behaviour.shows_card:
                 self._wait(lambda: not world.people.sitters[tracker.place].hides)
         self._look()
         tracker.executed(behaviour)

@@ -96,7 +96,7 @@ def mistaken(world: GuidedWorld, mistakes: Sequence[Mistake], *but: str) -> Iter
     """
     activity, people = world.activity, world.people
     ends = {rule.behaviour for rule in activity.stage_rules if rule.condition == "after"}
-    ends.update(but, (b.name for b in activity.behaviours.values() if b.effect == "finish"))
+    ends.update(but, (b.name for b in activity.behaviours.values() if b.ends))
     choices = [b for b in activity.behaviours.values() if b.name not in ends]
     for right, which, whom in mistakes:
         for _ in range(right):

@@ -152,8 +152,7 @@ def test_an_uncelebrated_winner_asks_again() -> None:
 
 def test_an_activity_without_draws_is_guided_as_far_as_possible() -> None:
     behaviours = {
-        name: replace(b, effect="none") if b.effect == "draw" else b
-        for name, b in BINGO.behaviours.items()
+        name: replace(b, effect="none") if b.calls else b for name, b in BINGO.behaviours.items()
     }
     world = GuidedWorld(replace(BINGO, behaviours=behaviours), IDS[:4], seed=2)
     for _ in range(60):

@@ -93,7 +93,7 @@ def vain_requests(events: list[Event]) -> list[VainRequest]:
         if isinstance(event, Acted):
             visit += event.state.place != event.after.place
             response = event.outcome.response
-            asks = event.action.behaviour.persuades and event.action.behaviour.effect != "none"
+            asks = event.action.behaviour.persuades and not event.action.behaviour.only_talks
             if asks and event.after.place != FRONT and not (response and response.followed):
                 found.append(VainRequest(visit, event.after.place, str(event.action.strategy)))
         elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:

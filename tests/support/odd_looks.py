@@ -29,9 +29,9 @@ class OddWorld(FaultyWorld):
 
     def execute(self, action: Action) -> Outcome:
         """Carry it out; count people who are asked to correct a right card."""
-        wrong = action.behaviour.effect == "clear wrong marks"
+        wrong = action.behaviour.clears_marks
         player = self.players.get(self.tracker.place)
-        if player is not None and (wrong or action.behaviour.effect == "set missing marks"):
+        if player is not None and (wrong or action.behaviour.sets_marks):
             marked, called = player.marked, player.called
             self.accused += not (marked & ~called if wrong else called & ~marked)
         return super().execute(action)

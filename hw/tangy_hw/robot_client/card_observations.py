@@ -107,7 +107,7 @@ class CardObservations:
         view = self.view
         if view is None:
             return None
-        wrong = behaviour.effect == "clear wrong marks"
+        wrong = behaviour.clears_marks
         cells = view.marked & ~view.called if wrong else view.called & ~view.marked
         return tuple(n for cell, n in enumerate(view.numbers) if cells >> cell & 1) or None
 
@@ -115,13 +115,13 @@ class CardObservations:
         self, card: dict[str, Any], behaviour: Behaviour, numbers: tuple[int, ...]
     ) -> bool:
         """Return whether a reading shows that the request was carried out."""
-        if behaviour.effect == "bring card closer":
+        if behaviour.shows_card:
             return bool(card["state"] != self._activity.unread)
         if card["card"] is None:
             return False
         face = self._numbers(card["card"])
         asked = sum(1 << cell for cell, number in enumerate(face) if number in numbers)
-        wanted = asked if behaviour.effect == "set missing marks" else 0
+        wanted = asked if behaviour.sets_marks else 0
         told = asked.bit_count() == len(numbers) and not card["hidden"] & asked
         return bool(told and card["marked"] & asked == wanted)
 

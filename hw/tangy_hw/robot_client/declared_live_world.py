@@ -247,7 +247,7 @@ class DeclaredLiveWorld(LiveWorld):
             DeviceError: it was aborted.
         """
         behaviour, game = action.behaviour, self.game
-        drives = behaviour.effect in ("go to user", "go to front")
+        drives = behaviour.drives
         if not drives and not self.lost:
             self._remedies.go_back(knows_place=True)  # staff may have driven it
         after = game.copy()

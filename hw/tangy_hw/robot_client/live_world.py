@@ -27,7 +27,6 @@ from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
 from tangy_hw.robot_process.stop_latch import ALONE, Preempted
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.effects import DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import LIVE, GameWorld
 from tangy_profiles.health import Health
@@ -185,7 +184,7 @@ class LiveWorld(LivePlan):
         succeeded, obsolete, self.broken = False, False, ""
         try:
             if self.tracker.allows(behaviour):
-                if behaviour.effect not in DRIVES and not self.lost:
+                if not behaviour.drives and not self.lost:
                     obsolete = self._remedies.take_place()  # staff may have driven it
                 found = None if obsolete else self._numbers_of(action)
                 if found is not None:
@@ -215,9 +214,9 @@ class LiveWorld(LivePlan):
     def _carry_out(self, action: Action, numbers: tuple[int, ...]) -> tuple[Response | None, bool]:
         """Carry it out; return a person's response, and whether the robot has done its part."""
         behaviour, tracker = action.behaviour, self.tracker
-        if behaviour.effect == "draw":
+        if behaviour.calls:
             self._keep_pace()
-        if behaviour.effect == "bring card closer" and self.eyes is not None:
+        if behaviour.shows_card and self.eyes is not None:
             self.read_card(tracker.place)  # no camera: nobody need move the card
             return None, True
         self._announce(action, numbers)
@@ -240,7 +239,7 @@ class LiveWorld(LivePlan):
                 assert_never(forgotten)
         if not behaviour.persuades or tracker.place == FRONT:
             return None, True
-        if behaviour.effect == "none" and tracker.place not in self.requests.signs:
+        if behaviour.only_talks and tracker.place not in self.requests.signs:
             return None, True  # the person's response cannot be observed
         return watch_response(self, action, numbers), True
 
@@ -248,7 +247,7 @@ class LiveWorld(LivePlan):
         """Speak, show and gesture; the public screen shows seats instead of people's names."""
         name, fill, deck = self.name_of(action.target), self.activity.fill, self.activity.deck
         seat, behaviour = self.seat_of(action.target), action.behaviour
-        called = self.calls.calling = numbers if action.behaviour.effect == "draw" else ()
+        called = self.calls.calling = numbers if action.behaviour.calls else ()
         picture = Picture(
             fill(action.image, seat, numbers),
             deck.label(called[0]) if called else "",

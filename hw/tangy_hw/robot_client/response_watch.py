@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.effects import CORRECTS
 from tangy_profiles.state import Response
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -
     """Observe the response of the person beside the robot; None if it cannot be observed."""
     place, patience = world.tracker.place, world.activity.patience
     person = world.who(place)
-    if world.eyes is not None and action.behaviour.effect in CORRECTS:
+    if world.eyes is not None and action.behaviour.corrects:
         told = world.eyes.response(action, place, person)
         world.tracker.seen = world.judged(place, world.eyes.state)
         return told
@@ -31,7 +30,7 @@ def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -
         if done:
             return Response(person, action.strategy, True, seconds <= patience, seconds)
         if now - began > PATIENCES * patience:
-            if action.behaviour.effect == "none" or world.cards.view is None:
+            if action.behaviour.only_talks or world.cards.view is None:
                 return None  # a sign that stays up may be forgotten, or mean something else
             return Response(person, action.strategy, False, False, now - began)
         before = now
@@ -40,7 +39,7 @@ def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -
 def _is_done(world: LiveWorld, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
     """Look whether a request has been carried out."""
     place = world.tracker.place
-    if behaviour.effect == "none":
+    if behaviour.only_talks:
         world.commands.wait(LOOK_SECONDS)
         world.commands.settle()
         return place not in world.requests.signs

@@ -194,5 +194,6 @@ def _numbers(activity: Activity, said: str) -> tuple[int, ...] | None:
 
 def _corrected(behaviour: Behaviour) -> str:
     """Return the checker of the state that a behaviour asks a person to correct, "" for none."""
-    by_effect = {"clear wrong marks": "wrong marks", "set missing marks": "missing marks"}
-    return by_effect.get(behaviour.effect, "")
+    if behaviour.clears_marks:
+        return "wrong marks"
+    return "missing marks" if behaviour.sets_marks else ""

@@ -126,6 +126,21 @@ class DeclaredBehaviour:
         return any(effect.does == "invite" for effect in self.effects)
 
     @property
+    def visits(self) -> bool:
+        """Whether the robot goes to a person."""
+        return any(effect.does == "go to whom" for effect in self.effects)
+
+    @property
+    def passes_turn(self) -> bool:
+        """Whether it lets the next player have the turn."""
+        return any(effect.does == "next turn" for effect in self.effects)
+
+    @property
+    def clears(self) -> set[str]:
+        """The names of the facts that it clears."""
+        return {effect.fact for effect in self.effects if effect.does == "clear"}
+
+    @property
     def needs_item(self) -> bool:
         """Whether it presents the next item, whatever the facts are."""
         return any(one.does == "next item" and not one.conditions for one in self.effects)

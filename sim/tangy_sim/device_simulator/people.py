@@ -16,7 +16,6 @@ from typing import assert_never
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.card_face import LAST_CARD, USUAL_SEED, numbers_of
-from tangy_profiles.effects import ABOUT_CARD, CORRECTS
 from tangy_profiles.person import Person
 from tangy_profiles.state import FRONT, Response
 from tangy_sim.device_simulator.agenda import Agenda
@@ -174,7 +173,7 @@ class People:
         behaviour = heard.behaviour
         if behaviour is None or self.game.over:
             return
-        away = self.place != FRONT or behaviour.effect == "go to user"
+        away = self.place != FRONT or behaviour.visits
         self._time += self.users.away_calls if away else 1.0
         sitter = self.sitters.get(heard.person or self.place)
         match behaviour.effect:
@@ -277,11 +276,11 @@ class People:
         """Let a person respond to a request: in time, late, or not at all."""
         patience = self.activity.patience
         response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
-        asked = behaviour.effect in ABOUT_CARD
+        asked = behaviour.about_card
         if asked and self._faults.concerns("never-complies", sitter.id):
             self._refuses(sitter, response)
             return
-        vain = behaviour.effect in CORRECTS and "no-effect" in self._faults
+        vain = behaviour.corrects and "no-effect" in self._faults
         seconds = _shown(response.seconds, response.complied, patience)
         self.game.responses.append(response._replace(seconds=seconds))
         self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard, vain))

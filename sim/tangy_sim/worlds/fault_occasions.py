@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.injection import FaultKind
 from tangy_sim.worlds.world import SimulatedWorld
@@ -35,15 +34,15 @@ class OccasionWorld(SimulatedWorld):
         theirs = there is None or there.person in (None, tracker.place)  # it concerns one person
         match kind.shows:
             case injection.DRIVING:
-                return behaviour.effect in DRIVES
+                return behaviour.drives
             case injection.LOOKING if self._never_complies(tracker.place):
                 return False  # a refusing person's card is not expected to change
             case injection.LOOKING:
                 if tracker.seen is None:
-                    return theirs and asked and behaviour.effect == "bring card closer"
-                return theirs and behaviour.effect in CORRECTS
+                    return theirs and asked and behaviour.shows_card
+                return theirs and behaviour.corrects
             case injection.ASKING:
-                about = behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
+                about = behaviour.about_card and tracker.allows(behaviour)
                 return theirs and asked and about
             case injection.CLOSING:
                 seen = tracker.seen is not None
@@ -65,8 +64,8 @@ class OccasionWorld(SimulatedWorld):
             return False  # nothing is corrected, so the request stays open
         player = self.players[self.tracker.place]
         wrong, missing = player.marked & ~player.called, player.called & ~player.marked
-        left = missing if behaviour.effect == "clear wrong marks" else wrong
-        mended = wrong if behaviour.effect == "clear wrong marks" else missing
+        left = missing if behaviour.clears_marks else wrong
+        mended = wrong if behaviour.clears_marks else missing
         if not mended or left:
             return False
         return not any(player.called & line == line for line in self.activity.deck.lines)
@@ -74,7 +73,7 @@ class OccasionWorld(SimulatedWorld):
     def _moves_on(self, behaviour: Behaviour) -> bool:
         """Return whether stage, place or request would reveal that a behaviour had no effect."""
         tracker = self.tracker
-        if behaviour.effect in DRIVES:
+        if behaviour.drives:
             return True
         if tracker.place in tracker.queue and tracker.seen is not None and behaviour.attends:
             # With nothing left to correct, it would look like a request that stays open.

@@ -11,7 +11,6 @@ from random import Random
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.effects import ABOUT_CARD, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health
 from tangy_profiles.robot import Robot
@@ -137,7 +136,7 @@ class FaultyWorld(OccasionWorld):
         vain = present.get("no-effect")
         if any(fault.kind.stops for name, fault in present.items() if name not in known):
             outcome = self._in_vain(action, completed=False, seconds=NOTICED)
-        elif mute and action.behaviour.effect not in DRIVES:
+        elif mute and not action.behaviour.drives:
             outcome = self._in_vain(action, completed=False)
         elif vain is not None and self.can_show(vain.kind, action):
             outcome = self._in_vain(action, completed=True)
@@ -227,7 +226,7 @@ class FaultyWorld(OccasionWorld):
         if response is not None and self._refused:
             late = 2 * self.activity.patience
             return response._replace(followed=False, complied=False, seconds=late)
-        if self.tracker.seen is None and action.behaviour.effect in ABOUT_CARD:
+        if self.tracker.seen is None and action.behaviour.about_card:
             return None  # the person's response cannot be seen
         return response
 

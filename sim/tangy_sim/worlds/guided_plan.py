@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import calling
 from tangy_profiles.cards import CardState
 from tangy_profiles.state import Situation
 from tangy_profiles.tracker import Tracker
@@ -57,7 +58,7 @@ class GuidedPlan:
         self._closing = {r.stage for r in self._ends}
         self._final = {n for r in self._ends for n in activity.behaviours[r.behaviour].needs}
         self._final.discard(activity.unread)
-        self.drawing = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        self.drawing = calling(activity.behaviours)
         able = [s for s in activity.card_states if self.drawing or s.checker not in DRAWN]
         rank = {s.name: uniform() + (s.checker == LINE) for s in able}
         self._kinds = sorted(able, key=lambda state: rank[state.name])
