@@ -393,7 +393,7 @@ def list_lines(faults: list[Fault]) -> list[str]:
     """List faults with their recoveries."""
     lines: list[str] = []
     for number, fault in enumerate(faults, 1):
-        lines.append(f"{number}. step {fault.step}: {fault.name} ({fault.status})")
+        lines.append(f"{number}. {fault_time(fault, fault.seconds)} {fault.name} ({fault.status})")
         lines += [
             f"   {fault_time(fault, move.seconds)}  {move_words(move)}" for move in fault.moves
         ]

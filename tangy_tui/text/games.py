@@ -90,11 +90,9 @@ def game_lines(
                 what = "did it"
             profile = supervision.persuasion.beliefs[response.person]
             best = max(profile, key=lambda strategy: profile[strategy].mean)
-            worked = f"; best so far: {best}" if profile[best].complied else ""
-            return [
-                f"   {name(response.person)} {what} ({response.strategy} now "
-                f"{belief.complied} of {belief.trials}{worked})."
-            ]
+            worked = f" Best so far: {best}." if profile[best].complied else ""
+            so_far = worked_words(response.strategy, belief)
+            return [f"   {name(response.person)} {what}. {so_far}{worked}"]
         case Unsure(_, _, reason):
             return [f"Tangy asks. {reason} What should it do?"]
         case Taught(teacher, lesson):
@@ -206,8 +204,14 @@ def stopped_words(reason: str, then: str) -> str:
 def response_words(response: Response, belief: Beta, name: Name) -> str:
     """Tell a person's response, and how often the strategy has worked."""
     what = "did it" if response.complied else "did it a little late"
-    worked = f"{response.strategy} has worked {of_times(belief.complied, belief.trials)}"
-    return f"{name(response.person)} {what}: {worked}."
+    return f"{name(response.person)} {what}. {worked_words(response.strategy, belief)}"
+
+
+def worked_words(strategy: str, belief: Beta) -> str:
+    """Tell how often a way of asking has worked with a person."""
+    if belief.trials == 1:
+        return f"Tangy asked with {strategy} for the first time."
+    return f"With {strategy} it has worked {of_times(belief.complied, belief.trials)} so far."
 
 
 def begun_words(number: int) -> str:

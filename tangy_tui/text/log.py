@@ -33,6 +33,7 @@ from tangy_tui.text.report import (
 from tangy_tui.text.results import progress_line, response_line
 from tangy_tui.text.session_page import CARE, HOW_LONG, NOBODY_NAMED, RESPONDED
 from tangy_tui.text.sessions import note_words, status_words
+from tangy_tui.text.situations import reason_of
 from tangy_tui.text.staff_actions import action_line
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
@@ -121,14 +122,29 @@ def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[st
             return [f"   {whose}{move_words(move)}.", *said]
 
 
-def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
+def step_sentence(done: Done, activity: Activity | None, name: Name) -> str:
+    """Tell what Tangy did and why: "Go to the user (Rosa), because somebody asks for help."."""
     situation = done.state.situation
-    words = activity.in_words(situation) if activity is not None else " / ".join(situation)
-    target = f" ({name(done.target)})" if done.target else ""
-    how = f", {done.strategy}" if done.strategy else ""
-    why = f", as {done.teacher} said" if done.teacher else ""
-    behaviour = done.behaviour if activity is None else activity.behaviour_words(done.behaviour)
-    lines = [f"{done.number}. {words} -> {behaviour}{target}{how}{why}"]
+    behaviour, why, clause = done.behaviour, " / ".join(situation), False
+    if activity is not None:
+        behaviour = activity.behaviour_words(done.behaviour)
+        why, clause = reason_of(activity, done.state, name)
+    if done.teacher:
+        why, clause = "", False
+    whom = name(done.target) if done.target else ""
+    notes = "; ".join(filter(None, (whom, "" if clause else why)))
+    parts = (
+        f"{behaviour[:1].upper()}{behaviour[1:]}",
+        f" ({notes})" if notes else "",
+        f", with {done.strategy}" if done.strategy else "",
+        f", because {why}" if clause else "",
+        f", as {done.teacher} said" if done.teacher else "",
+    )
+    return f"{''.join(parts)}."
+
+
+def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
+    lines = [step_sentence(done, activity, name)]
     if done.said:
         lines.append(f"   Tangy says: {done.said}")
     if done.stopped:

@@ -25,8 +25,8 @@ def often(times: int) -> str:
 
 
 def of_times(part: int, times: int) -> str:
-    """Tell how often of how many times something happened: "1 of 1 time", "7 of 9 times"."""
-    return f"{part:,} of {counted(times, 'time')}"
+    """Tell how often of how many times something happened: "1 of 1 times", "7 of 9 times"."""
+    return f"{part:,} of {times:,} times"
 
 
 def ordinal(number: int) -> str:

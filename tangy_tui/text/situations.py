@@ -81,6 +81,14 @@ def moment_words(activity: Activity, state: ActivityState, name: Name) -> str:
     return activity.in_words(state.situation)
 
 
+def reason_of(activity: Activity, state: ActivityState, name: Name) -> tuple[str, bool]:
+    """Return the situation that decides about a step, and whether it is a clause."""
+    why = moment_words(activity, state, name)
+    if isinstance(activity, DeclaredActivity):
+        return why, bool(activity.declaration.stage(state.stage).words)
+    return why, why in {label for rule in activity.stage_rules for label in rule.label.values()}
+
+
 def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
     """Tell what the robot knows now, in a sentence or two that a newcomer can act on."""
     if state.place == FRONT:

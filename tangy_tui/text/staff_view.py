@@ -7,7 +7,6 @@ from datetime import datetime, timedelta
 from typing import TypeAlias, assert_never
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_rules import Patterns
 from tangy_profiles.state import ActivityState
 from tangy_tui.app.game_commands import Autonomy
@@ -15,7 +14,7 @@ from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.situations import moment_words
+from tangy_tui.text.situations import reason_of
 
 Fact: TypeAlias = str | tuple[str, ...]
 """A fact in words; several: the same in shorter and shorter words."""
@@ -134,11 +133,7 @@ def next_words(
         waits: whether Tangy waits for the time of the next call.
     """
     behaviour = activity.behaviours.get(decision.behaviour)
-    why = "" if calls_first else activity.in_words(state.situation)
-    clause = why in {label for rule in activity.stage_rules for label in rule.label.values()}
-    if isinstance(activity, DeclaredActivity) and not calls_first:
-        why = moment_words(activity, state, name)
-        clause = bool(activity.declaration.stage(state.stage).words)
+    why, clause = ("", False) if calls_first else reason_of(activity, state, name)
     done, whom = "Tangy asks you", ""
     if behaviour is not None and decision.sure:
         done = behaviour.question

@@ -129,7 +129,7 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
     if view is None:
         return [NO_GAME]
     phase = stage_words(view) or PHASES[view.phase]
-    where = f"Game {view.number}, step {view.step}: {phase}, robot {robot_words(view)}."
+    where = f"Game {view.number}: {phase}, robot {robot_words(view)}."
     return [f"{driver_words(view)}. {where}", *now_lines(view, activity, name)]
 
 

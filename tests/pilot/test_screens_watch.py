@@ -99,10 +99,10 @@ async def test_the_screen_follows_the_game(
     control: GameController, screen: WatchScreen, run: Run
 ) -> None:
     async with run(screen):
-        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await until(lambda: screen.steps == 5)
         told = len(screen.query_one(LogView).sentences)
         go_on_by_script(control, expert=False)
-        await until(lambda: screen.query_one(StatusLine).status.step == 6)
+        await until(lambda: screen.steps == 6)
         await until(lambda: len(screen.query_one(LogView).sentences) > told)
 
 
@@ -110,7 +110,7 @@ async def test_stop_stops_the_robot_and_names_who_did_it(
     control: GameController, screen: WatchScreen, run: Run, workspace: Workspace
 ) -> None:
     async with run(screen) as pilot:
-        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await until(lambda: screen.steps == 5)
         await pilot.press("ctrl+x")
         await until(lambda: control.phase == "stopped")
         await until(lambda: screen.query_one(StatusLine).status.alarm)
@@ -125,7 +125,7 @@ async def test_the_status_line_tells_why_tangy_does_nothing(
 ) -> None:
     async with run(screen, size=SMALL) as pilot:
         status = screen.query_one(StatusLine)
-        await until(lambda: status.status.step == 5)
+        await until(lambda: screen.steps == 5)
         assert status.status.stage == ""
         control.apply(command)
         await until(lambda: status.status.stage)
@@ -164,7 +164,7 @@ async def test_leaving_stops_nothing(
     control: GameController, screen: WatchScreen, run: Run
 ) -> None:
     async with run(screen) as pilot:
-        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await until(lambda: screen.steps == 5)
         await pilot.press("ctrl+c")
         await until(lambda: not pilot.app.is_running)
     assert control.phase == "running"
@@ -174,7 +174,7 @@ async def test_no_other_key_changes_the_game(
     control: GameController, screen: WatchScreen, run: Run
 ) -> None:
     async with run(screen) as pilot:
-        await until(lambda: screen.query_one(StatusLine).status.step == 5)
+        await until(lambda: screen.steps == 5)
         await pilot.press(*"pEgcodhiaer.<>", "f2", "enter")
         await pilot.pause()
     assert (control.phase, control.supervision.steps) == ("running", 5)

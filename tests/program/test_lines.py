@@ -27,7 +27,7 @@ from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.text.coach import GUIDED, SAYABLE
-from tangy_tui.text.games import belief_lines, game_lines
+from tangy_tui.text.games import belief_lines, game_lines, worked_words
 from tangy_tui.text.questions import NO_QUESTION
 from tangy_tui.text.remarks import WHICH_ANSWER
 from tangy_tui.text.teaching_commands import GUIDED_ALREADY, command_line
@@ -323,10 +323,10 @@ def test_games_are_printed_step_by_step_with_responses_and_posteriors(
     assert said[0] == "Game 1 begins."
     assert said[1] == "1. the game has not begun -> greet everyone, as shown twice"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
-    late = " did it a little late, which does not count ("
-    learnt = [line for line in said if " did it (" in line or late in line]
+    late = " did it a little late, which does not count. "
+    learnt = [line for line in said if " did it. " in line or late in line]
     assert any(late in line for line in learnt)
-    assert any("best so far: " in line for line in learnt)
+    assert any(" Best so far: " in line for line in learnt)
     assert said[-4:] == belief_lines(supervision, workspace.name)
     assert [line.partition(":")[0] for line in said[-4:]] == [f"User {n}" for n in range(1, 5)]
     assert all(line.isprintable() for line in said)
@@ -340,13 +340,15 @@ def test_responses_of_people_are_worded_kindly(workspace: Workspace, cover: Cove
 
     def line(*, followed: bool, complied: bool) -> str:
         response = Response("user2", "praise", followed, complied, 12.0)
-        return game_lines(BeliefUpdated(response, Beta(1, 2)), supervision, workspace.name)[0]
+        return game_lines(BeliefUpdated(response, Beta(2, 3)), supervision, workspace.name)[0]
 
-    assert line(followed=True, complied=True).startswith("   User 2 did it (praise now ")
-    late = "   User 2 did it a little late, which does not count (praise now "
+    assert line(followed=True, complied=True).startswith("   User 2 did it. With praise it ")
+    late = "   User 2 did it a little late, which does not count. With praise it "
     assert line(followed=True, complied=False).startswith(late)
-    never = "   User 2 would rather not just now (praise now "
+    never = "   User 2 would rather not just now. With praise it "
     assert line(followed=False, complied=False).startswith(never)
+    assert worked_words("scarcity", Beta(2, 1)) == "Tangy asked with scarcity for the first time."
+    assert worked_words("praise", Beta(8, 3)) == "With praise it has worked 7 of 9 times so far."
 
 
 def test_a_stopped_game_gives_its_reason(workspace: Workspace, cover: Cover) -> None:

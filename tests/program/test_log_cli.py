@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
@@ -121,8 +122,10 @@ def test_a_game_is_shown_step_by_step_with_its_faults(tangy: Tangy, played: Path
     assert kinds.count("fault") == len(document["fault_list"]) == 3
     lines = tangy("log", "show", 2, "--data", played).stdout.splitlines()
     halted = next(n for n, line in enumerate(lines) if "Laser scanner silent: halted" in line)
-    numbers = [line.split("  ")[-1].split(".")[0] for line in lines[:halted] if " -> " in line]
-    assert numbers[-1] == "6", "the fault stands after the step after which it came"
+    steps = [line for line in lines[:halted] if re.match(r" *\d+:\d\d \d\d:\d\d:\d\d  [A-Z]", line)]
+    assert len(steps) == 6, "the fault stands after the step after which it came"
+    assert steps[0].endswith("  Greet everyone, because the game has not begun.")
+    assert "->" not in "".join(lines)
     assert any("Tangy says: " in line for line in lines)
     assert any(" did it" in line or " would rather not" in line for line in lines)
 

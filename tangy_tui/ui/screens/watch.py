@@ -94,6 +94,11 @@ class WatchScreen(TangyScreen[None]):
             yield panel(LogView(id="log"))
         yield KeyLine("filter", "zoom", "palette", "quit", "help")
 
+    @property
+    def steps(self) -> int:
+        """The number of steps of the game so far; 0: there is no game."""
+        return 0 if self._view is None else self._view.step
+
     async def on_mount(self) -> None:
         """Start to poll."""
         log = self.query_one(LogView)
@@ -224,7 +229,6 @@ class WatchScreen(TangyScreen[None]):
                 robot=robot,
                 stage=text.stage_words(view),
                 game=view.number,
-                step=view.step,
                 note=text.world_and_driver(view),
                 alarm=robot != "OK" and not robot.startswith(WAITS),
             )
