@@ -17,6 +17,9 @@ class ActionName(NamedTuple):
     short: str
 
 
+EMPTIES = "empty the line"
+"""What Esc does first while there is text in the line for commands."""
+
 NAMES: Mapping[str, ActionName] = MappingProxyType(
     {
         "stop": ActionName("STOP the robot", "STOP"),

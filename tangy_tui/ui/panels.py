@@ -8,6 +8,7 @@ from textual import events
 from textual.widget import Widget
 from textual.widgets import Static
 
+from tangy_tui.text.keys import EMPTIES
 from tangy_tui.ui.keys import Key, foot
 
 if TYPE_CHECKING:
@@ -29,7 +30,8 @@ ALWAYS_SHOWN = 2
 TOGETHER = {"slower": "faster"}
 """Keys that a key line shows only with the key after them."""
 
-HOME = "back:home"
+BACK = "back"
+HOME = f"{BACK}:home"
 """The key that leaves a screen with an input line; in the line it has to be pressed twice."""
 
 
@@ -45,11 +47,11 @@ class KeyLine(Static):
         self._keys = keys
         self._typing = typing
         self._in_line = False
+        self._empties = False  # Esc empties the line
 
     def on_mount(self) -> None:
-        """Follow the focus: in an input line the first Esc only leaves the line."""
-        if HOME in self._keys:
-            self.watch(self.screen, "focused", self._follow_focus)
+        """Follow the focus: in an input line Esc empties the line first, and then leaves it."""
+        self.watch(self.screen, "focused", self._follow_focus)
 
     def _follow_focus(self, focused: Widget | None) -> None:
         from textual.widgets import Input
@@ -57,6 +59,15 @@ class KeyLine(Static):
         in_line = isinstance(focused, Input)
         if in_line is not self._in_line:
             self._in_line = in_line
+            self._write()
+        if focused is not None and hasattr(focused, "empties"):
+            self.watch(focused, "empties", self._follow_line)
+        self._follow_line()
+
+    def _follow_line(self) -> None:
+        empties = bool(getattr(self.screen.focused, "empties", False))
+        if empties is not self._empties:
+            self._empties = empties
             self._write()
 
     def show(self, *keys: str | Key, typing: bool = False) -> None:
@@ -76,10 +87,16 @@ class KeyLine(Static):
         from textual.content import Content
 
         keys = foot(self.app, *self._keys, typing=self._typing)
-        if self._in_line and HOME in self._keys:
-            at = self._keys.index(HOME)
-            key, word = keys[at]
-            keys[at] = (f"{key} {key}", word)
+        back = next((n for n, one in enumerate(self._keys) if str(one).startswith(BACK)), None)
+        if self._empties:
+            empty = (foot(self.app, BACK)[0][0], EMPTIES)
+            if back is None:
+                keys.insert(max(0, len(keys) - ALWAYS_SHOWN + 1), empty)
+            else:
+                keys[back] = empty
+        elif self._in_line and HOME in self._keys and back is not None:
+            key, word = keys[back]
+            keys[back] = (f"{key} {key}", word)
         first, last = keys[:-ALWAYS_SHOWN], keys[-ALWAYS_SHOWN:]
         width = self.size.width
         while first and sum(len(key) + len(word) + 3 for key, word in (*first, *last)) - 2 > width:

@@ -19,6 +19,7 @@ from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.text.keys import EMPTIES
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
@@ -281,10 +282,14 @@ async def test_a_stop_holds_the_answer_until_the_release(
         await pilot.pause()
         assert list(workspace.store.events()) == before
         assert screen.control.supervision.question is not None
-        await pilot.press("escape", "p")
+        await pilot.pause()
+        assert f"esc {EMPTIES}" in screen_text(pilot.app)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert f"esc {EMPTIES}" not in screen_text(pilot.app)
+        await pilot.press("escape", "p")  # out of the empty line
         await pilot.pause()
         assert "STOPPED" not in screen_text(pilot.app)
-        await pilot.press(*["backspace"] * len(".E:"))  # letters still go to the line
         await answer(pilot)
         while screen.control.supervision.question is not None:
             await pilot.pause(0.02)

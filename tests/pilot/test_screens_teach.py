@@ -14,6 +14,7 @@ from textual.widgets import Static
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.text.keys import EMPTIES
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
@@ -512,18 +513,23 @@ async def test_a_notice_stands_in_the_log_and_covers_nothing(
         assert all(n < first for n in changed)
 
 
-async def test_the_foot_tells_how_often_escape_is_pressed_to_go_home(
+async def test_the_foot_tells_what_escape_does_and_how_often_it_is_pressed_to_go_home(
     run: Run, workspace: Workspace
 ) -> None:
     async with run(SMALL, app=program(workspace)) as pilot:
-        await pilot.press("tab")
-        await pilot.pause()
-        assert pilot.app.screen.query_one(CommandBar).lists
-        assert "esc esc home" in screen_text(pilot.app)
+        for begun in (("tab",), tuple("cal")):
+            await pilot.press(*begun)
+            await pilot.pause()
+            assert f"esc {EMPTIES}" in screen_text(pilot.app)
+            assert "home" not in screen_text(pilot.app).splitlines()[-1]
+            await pilot.press("escape")
+            await pilot.pause()
+            bar = pilot.app.screen.query_one(CommandBar)
+            assert (bar.text, bar.lists, bar.has_keys) == ("", False, True)
+            assert "esc esc home" in screen_text(pilot.app)
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
-        assert not pilot.app.screen.query_one(CommandBar).lists
         shown = screen_text(pilot.app)
         assert "esc home" in shown
         assert "esc esc" not in shown

@@ -185,18 +185,37 @@ async def test_the_history_keeps_the_typed_text(run: Run) -> None:
         assert bar_of(pilot).text == "thr"
 
 
-async def test_escape_makes_letters_keys_and_colon_returns(run: Run) -> None:
+async def test_escape_empties_the_line_then_leaves_it_and_colon_returns(run: Run) -> None:
     screen = Bar()
     async with run(screen) as pilot:
-        await pilot.press("a", "escape", "u")
-        assert screen.undone == 1
-        assert screen.left == 0
+        await pilot.press("a", "escape")
+        assert (bar_of(pilot).text, bar_of(pilot).has_keys) == ("", True)
+        await pilot.press("escape", "u")
+        assert (screen.undone, screen.left, bar_of(pilot).has_keys) == (1, 0, False)
         await pilot.press("escape")
         assert screen.left == 1
         await pilot.press("colon", "b")
-        assert bar_of(pilot).text == "ab"
+        assert bar_of(pilot).text == "b"
         await pilot.press("colon")
-        assert bar_of(pilot).text == "ab:"
+        assert bar_of(pilot).text == "b:"
+
+
+async def test_escape_empties_the_line_of_a_command_that_came_back(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        bar_of(pilot).restore("flurb")
+        await pilot.press("escape")
+        assert (bar_of(pilot).text, bar_of(pilot).has_keys) == ("", True)
+
+
+async def test_escape_closes_the_list_and_stays_in_the_line(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("tab")
+        await pilot.pause()
+        assert bar_of(pilot).lists
+        await pilot.press("escape")
+        await pilot.pause()
+        assert (bar_of(pilot).lists, bar_of(pilot).has_keys) == (False, True)
+        assert "celebrate" not in pilot.text()
 
 
 async def test_question_mark_is_help_in_an_empty_bar_only(run: Run) -> None:
@@ -227,7 +246,8 @@ async def test_the_cursor_does_not_blink(run: Run) -> None:
 
 async def test_leaving_the_bar_with_text_shows_the_keys(run: Run) -> None:
     async with run(Bar()) as pilot:
-        await pilot.press("c", "escape")
+        await pilot.press("c")
+        pilot.app.screen.set_focus(None)
         await pilot.pause()
         assert "type a command, or ? for help" in pilot.text()
         await pilot.press("colon")

@@ -9,6 +9,7 @@ from textual.screen import Screen
 from textual.timer import Timer
 from textual.widgets import Input, Static
 
+from tangy_tui.text.keys import EMPTIES
 from tangy_tui.text.teaching_commands import NOTHING_FITS
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.command_input import LONGEST, CommandInput
@@ -179,6 +180,11 @@ class CommandBar(Vertical):
         event.stop()
         self._matches.show("", event.commands, "" if event.commands else NOTHING_FITS)
 
+    def on_command_input_emptied(self, event: CommandInput.Emptied) -> None:
+        """Remove the list from above the line."""
+        event.stop()
+        self._show_above()
+
     def _show_above(self) -> None:
         """Show the matches; if text is left in a bar without focus, the keys."""
         typed = self._input.value
@@ -187,7 +193,13 @@ class CommandBar(Vertical):
         elif typed and self._letters and not self._input.has_focus:
             self._matches.show(typed, (), self._texts[1])
         else:
-            self._matches.show(typed, self._complete(typed) if typed.strip() else ())
+            matches = self._complete(typed) if typed.strip() else ()
+            self._matches.show(typed, matches, self._esc if typed and not matches else "")
+
+    @property
+    def _esc(self) -> str:
+        """What Esc does, where the keys in the line without the focus are the screen's foot."""
+        return f"esc {EMPTIES}" if self._letters and self._input.has_focus else ""
 
     def on_command_input_entered(self, event: CommandInput.Entered) -> None:
         """Post the command."""

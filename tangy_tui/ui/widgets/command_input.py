@@ -7,6 +7,7 @@ from typing import ClassVar
 from textual import events
 from textual.binding import Binding, BindingType
 from textual.message import Message
+from textual.reactive import reactive
 from textual.widgets import Input
 
 from tangy_tui.ui.clean_output import clean
@@ -27,16 +28,19 @@ class CommandInput(Input):
         Binding("tab", "accept", "Complete the command"),
         Binding("up", "recall(-1)", "The command before"),
         Binding("down", "recall(1)", "The command after", show=False),
-        Binding("escape", "leave", "Leave the command bar"),
+        Binding("escape", "leave", "Empty the line, then leave it"),
     ]
     HELP = (
         "Type what Tangy should do. On an empty line Tab lists what can be said now; pressed again "
         "it takes one after the other. Tab or the right arrow completes what you type, Enter gives "
-        "it, and Tangy asks before it does anything. Esc leaves the bar."
+        "it, and Tangy asks before it does anything. Esc empties the line, then leaves it."
     )
 
     closed = False
     """Whether a command is being processed; keys are discarded meanwhile."""
+
+    empties: reactive[bool] = reactive(False, repaint=False)
+    """Whether Esc empties the line or closes the list; otherwise it leaves the line."""
 
     class Entered(Message):
         """A command was entered."""
@@ -51,6 +55,9 @@ class CommandInput(Input):
         def __init__(self, commands: tuple[str, ...]) -> None:
             super().__init__()
             self.commands = commands
+
+    class Emptied(Message):
+        """Esc emptied the line."""
 
     def __init__(self, complete: Complete, sayable: Sayable, placeholder: str) -> None:
         super().__init__(
@@ -107,6 +114,10 @@ class CommandInput(Input):
         event.prevent_default()
         return True
 
+    def watch_value(self) -> None:
+        """Note whether Esc has something to empty."""
+        self.empties = bool(self.value or self._listed)
+
     def give_back(self, text: str) -> None:
         """Put a command back, selected."""
         self.put(text)
@@ -159,6 +170,7 @@ class CommandInput(Input):
         elif listed := self._sayable():
             self._listed, self._taken = listed, -1
             self.put("")  # a line of spaces counts as empty
+            self.empties = True
             self.post_message(self.Listed(listed))
         else:
             self.screen.focus_next()
@@ -176,6 +188,7 @@ class CommandInput(Input):
     def forget_list(self) -> None:
         """Clear the list: other text was typed, or other commands apply."""
         self._listed, self._taken = (), -1
+        self.empties = bool(self.value)
 
     def action_recall(self, by: int) -> None:
         """Recall a command from the history; after the last one, the unfinished line."""
@@ -188,8 +201,10 @@ class CommandInput(Input):
         self.put(self._draft if self._at == len(self.history) else self.history[self._at])
 
     def action_leave(self) -> None:
-        """Close the list of commands, and remove the focus from the line."""
-        if self.listed:
+        """Empty the line and close the list of commands; an empty line loses the focus."""
+        if self.value or self.listed:
             self.forget_list()
             self.put("")
-        self.screen.set_focus(None)
+            self.post_message(self.Emptied())
+        else:
+            self.screen.set_focus(None)
