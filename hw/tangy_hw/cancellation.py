@@ -11,13 +11,6 @@ from collections.abc import Callable
 
 from tangy_profiles.errors import TangyError
 
-PARTS = ("bench", "faces", "program", "senses", "first words")
-"""Parts of start-up that are not devices.
-
-The simulated devices, the models for faces, the robot process, the readers of cards and faces; the
-last one waits for the first data of each device.
-"""
-
 
 class Cancelled(TangyError):
     """Start-up was cancelled."""
@@ -35,7 +28,8 @@ class Cancellation:
         self._ends: list[Callable[[], None]] = []
         self._cancelled = self._complete = False
         self.parts: tuple[str, ...] = ()
-        """Parts started so far: devices and `PARTS`; the last is in progress."""
+        """Parts started so far, the last one in progress: devices, "bench", "faces", "program",
+        "senses" (the readers of cards and faces), "first words" (the first data of each device)."""
         self.done: tuple[int, int] | None = None
         """Finished and total pieces of the current part; None if it has none."""
 

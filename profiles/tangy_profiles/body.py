@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from math import cos, hypot, radians, sin
+from math import hypot
 from types import MappingProxyType
 
 from tangy_profiles.reading import Table
@@ -121,9 +121,3 @@ def _left_of(a: Point, b: Point, c: Point) -> int:
     """Return whether c is to the left (1) or right (-1) of the line from a to b, or on it (0)."""
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     return (across > 1e-9) - (across < -1e-9)
-
-
-def looks(mount: Mount, metres: float) -> Point:
-    """Return the point this many metres in front of a device on the robot."""
-    yaw = radians(mount.yaw)
-    return mount.x + metres * cos(yaw), mount.y + metres * sin(yaw)

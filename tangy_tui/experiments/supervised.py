@@ -5,7 +5,7 @@ It is in a temporary folder, where teachers' answers in games are learnt as in t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -25,20 +25,16 @@ from tangy_profiles.teaching_records import (
     DemonstrationStep,
 )
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import expected_effects
-from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.monitoring.supervision import Supervision
 
 DEMONSTRATIONS = 3
 """Demonstrations that a policy is learnt from, as in the paper."""
-
-ENDLESS = 20_000
-"""Moves after which a game is considered endless."""
 
 
 @dataclass(frozen=True)
@@ -109,23 +105,6 @@ def keep(store: Store, shown: Demonstration) -> None:
     for step in shown.steps:
         store.append(DemonstrationStep(demonstration=shown.id, step=step))
     store.append(DemonstrationFinished(demonstration=shown.id))
-
-
-def play(
-    game: Supervision, *, until: Callable[[Supervision], bool] = lambda _: False
-) -> list[Event]:
-    """Play one game with scripted people to its end, or until a condition holds.
-
-    Raises:
-        RuntimeError: the game does not end.
-    """
-    control = scripted_controller(game)
-    events = control.begin()
-    for _ in range(ENDLESS):
-        if game.over or until(game):
-            return events
-        events += go_on_by_script(control, expert=True)
-    raise RuntimeError(f"A game did not end within {ENDLESS} moves.")
 
 
 def people_of(one: Supervised) -> Sequence[str]:

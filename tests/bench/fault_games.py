@@ -17,12 +17,13 @@ from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, FaultK
 from tangy_tui.experiments.classroom import GUIDED, RANDOM, Course, activity_of
 from tangy_tui.experiments.induced import InducingWorld, recovery_of
 from tangy_tui.experiments.matching import RIGHT, match_faults
-from tangy_tui.experiments.supervised import Supervised, people_of, play, supervised
+from tangy_tui.experiments.supervised import Supervised, people_of, supervised
 from tangy_tui.experiments.sweep import Case, Settings
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.monitoring.fault import OPEN, Fault, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.comparison import TO_ITS_END
+from tests.support.games import play
 
 REQUESTS = 20
 """The most behaviours until a person who never follows must have been diagnosed."""
@@ -120,7 +121,7 @@ def _cell(
     count = Counter[str]()
     for number in range(seeds):
         world.after, world.executed = 3 * (number % 5), 0
-        play(game, until=lambda game: _settled(game, world))
+        play(game, stops=lambda game: _settled(game, world))
         count["executed"] += world.executed > 0
         if not world.induced:
             continue

@@ -16,7 +16,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tangy_tui.experiments.classroom import RANDOM, Course, activity_of
-from tangy_tui.experiments.supervised import people_of, play, supervised
+from tangy_tui.experiments.supervised import people_of, supervised
+from tests.support.games import play
 from tests.support.odd_looks import ODD, OddCards, OddStates, OddWorld
 
 WORLDS: dict[str, type[OddWorld]] = {"a card": OddCards, "all that is observed": OddStates}

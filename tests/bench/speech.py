@@ -51,7 +51,6 @@ from tests.bench.sentences import FAR, NEAR, WORDINGS
 Samples: TypeAlias = NDArray[np.float64]
 Job: TypeAlias = tuple[str, str, str, str]  # kind, voice, text, condition
 
-FLITE = ("rms", "awb", "slt", "kal16")
 FESTIVAL = {"ked": "ked_diphone", "kal": "kal_diphone", "slt_hts": "cmu_us_slt_arctic_hts"}
 TUNED = ("rms", "awb", "ked")
 QUOTED = ("slt", "slt_hts", "kal16", "kal")

@@ -30,7 +30,6 @@ from tangy_sim.rendering.card_odd_chips import odd_chip, sheer_chip
 TESTS = Path(__file__).parents[1]
 CLEAN = View(pixels=36, noise=1, quality=95)
 ALL = (1 << 25) - 1
-Take = Callable[..., RenderedFrame]
 
 
 @cache

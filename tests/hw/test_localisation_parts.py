@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_hw.device_protocols import Pose, Twist
-from tangy_hw.navigation.likelihood import IN_CACHE, LikelihoodField, thin
+from tangy_hw.device_protocols import Pose, Scan, Twist
+from tangy_hw.navigation.likelihood import BEAMS, IN_CACHE, NEAREST, LikelihoodField, evenly
 from tangy_hw.navigation.localisation import LEAD
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import (
@@ -25,7 +25,14 @@ from tangy_hw.navigation.particles import (
     resample,
 )
 from tangy_hw.navigation.pose_search import Search
-from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
+from tangy_hw.navigation.poses import (
+    IDENTITY,
+    Floats,
+    compose,
+    endpoints,
+    relative_pose,
+    wrap,
+)
 from tangy_hw.navigation.recent_scans import BACK, MANY, Comparison, RecentScans
 from tangy_hw.navigation.recent_scans import FEWEST as FEWEST_SCANS
 from tangy_hw.navigation.scan_matching import Reference
@@ -38,6 +45,11 @@ MAP = map_of_room(ROOM)
 SIDES = room_sides(ROOM)
 START = Pose(5.0, 1.2, 0.0)
 ROUND = tour([(5, 1.2), (8, 4.2), (5, 1.2)])
+
+
+def thin(scan: Scan, farthest: float) -> Floats:
+    """Return the ends (n, 2), in m, of the beams that the particles are scored with."""
+    return evenly(endpoints(scan, farthest, IDENTITY, NEAREST), BEAMS)
 
 
 class TestParticles:

@@ -43,7 +43,6 @@ class FakeEars:
         self.tell: Callable[[HearingNote], None] = lambda note: None
         self.changed: Callable[[], None] = lambda: None
         self.asks = False
-        self.shuts = 0
         self.closed = False
         self.followed: list[TeachingEvent] = []
         self.books: list[Phrasebook] = []
@@ -78,7 +77,6 @@ class FakeEars:
 
     def shut(self) -> None:
         """Hear nothing."""
-        self.shuts += 1
         self.be("shut")
 
     def open(self) -> None:

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 WELL = Sight("OK", "", 8.0, 0.05, 0.0, 0.5, 0.2, 0.6)
 LOOK = 0.25
-PATIENCE = 20.0
 
 
 def picture(width: int, height: int, red: int = 0) -> Any:

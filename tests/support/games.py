@@ -22,11 +22,16 @@ def world_of(game: Supervision) -> FaultyWorld:
     return game.world
 
 
-def play(game: Supervision, *, expert: bool = True) -> list[Event]:
-    """Play one game to its end, with scripted people."""
+def play(
+    game: Supervision,
+    *,
+    expert: bool = True,
+    stops: Callable[[Supervision], object] = lambda _: False,
+) -> list[Event]:
+    """Play one game with scripted people to its end, or until a condition is true."""
     control = scripted_controller(game)
     events = control.begin()
-    while not game.over:
+    while not (game.over or stops(game)):
         events += go_on_by_script(control, expert=expert)
     return events
 

@@ -57,17 +57,6 @@ class Optics:
         return 2 * math.pi / self.resolution
 
 
-def encode(value: int, length: int) -> bytes:
-    """Encode a number in `length` characters.
-
-    Raises:
-        ValueError: it is negative, or too large.
-    """
-    if not 0 <= value < 1 << 6 * length:
-        raise ValueError(f"{value} does not fit {length} characters")
-    return bytes((value >> 6 * place & 0x3F) + BASE for place in reversed(range(length)))
-
-
 def decode(written: bytes) -> int:
     """Decode a number from all these characters.
 

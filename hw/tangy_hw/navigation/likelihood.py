@@ -12,7 +12,7 @@ from scipy.ndimage import label
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
-from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points
+from tangy_hw.navigation.poses import Floats, lengths, transform_points
 
 Field: TypeAlias = NDArray[np.float32]
 
@@ -25,11 +25,6 @@ SHORT = 0.3  # metres that a beam must pass beyond a wall to contradict it
 LEVELS = 255  # steps in which a field is stored
 IN_CACHE = 1 << 15  # beams that are scored at a time, so that their numbers stay in the cache
 WALL = 15  # connected cells that make a wall; chairs have fewer, and move
-
-
-def thin(scan: Scan, farthest: float, laser: Pose = IDENTITY, beams: int = BEAMS) -> Floats:
-    """Return the ends (n, 2), in m, of at most `beams` beams with a return, evenly spaced."""
-    return evenly(endpoints(scan, farthest, laser, NEAREST), beams)
 
 
 def evenly(points: Floats, most: int) -> Floats:
