@@ -14,6 +14,7 @@ StaffActionKind = Literal[
     "let go on",
     "took over",
     "gave back",
+    "answered",
     "ended",
     "autonomy",
     "drove",
@@ -69,7 +70,8 @@ class StaffAction(EventRecord):
 
     `person` is whom it concerns. `detail` depends on `did`: the pace in s, a card's number, the
     label of a call, the names of patterns or rules, the kinds of faults, the level of autonomy, the
-    words that a person said, the seconds of a freeze, or a note in words. `seconds` is the time in
+    words that a person said, the seconds of a freeze, the behaviour that staff chose
+    after they took over, or a note in words. `seconds` is the time in
     the game, `taken_back` the number of a call that no longer counts, and `seat` (from 1) the seat
     of a new person who came.
     """

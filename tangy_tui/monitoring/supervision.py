@@ -395,4 +395,6 @@ class Supervision:
 
     def _answered(self, question: Unsure, move: RecoveryEvent) -> list[Event]:
         fault = self._asked_about(question)
+        if fault is None and move.answer:  # staff took over
+            self.note("answered", move.by, person=move.target, detail=move.answer)
         return self.recovery.move(fault, move) if fault is not None else []

@@ -34,7 +34,7 @@ from tangy_tui.text.results import progress_line, response_line
 from tangy_tui.text.session_page import CARE, HOW_LONG, NOBODY_NAMED, RESPONDED
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.situations import reason_of
-from tangy_tui.text.staff_actions import action_line
+from tangy_tui.text.staff_actions import action_line, chosen_words, with_behaviour
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
 
@@ -107,7 +107,7 @@ def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[st
                 f"   Why: {fault.why}.",
             ]
         case Noted() as noted:
-            return [f"*  {action_line(noted, name)}"]
+            return [f"*  {action_line(with_behaviour(noted, activity), name)}"]
         case Unclear(person, asked_again, silent):
             again = ": Tangy asks again" if asked_again else ", and Tangy has asked often enough"
             did = "said nothing" if silent else "did not answer clearly"
@@ -119,6 +119,9 @@ def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[st
         case Moved(fault, move):
             said = [f"   Tangy says: {move.speech}"] if move.speech else []
             whose = "" if fault.asks_only else f"{fault.name}: "
+            if move.answer:
+                words = chosen_words(activity, move.answer, move.target, name)
+                return [f"   {whose}{move.by} {words}.", *said]
             return [f"   {whose}{move_words(move)}.", *said]
 
 
@@ -151,7 +154,7 @@ def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
         lines.append(f"   {STOPPED_BEFORE}")
     elif not done.completed:
         lines.append("   It could not be carried out.")
-    elif not done.right:
+    elif not done.right and not done.teacher:
         lines.append("   That is not what the activity expects here.")
     return lines
 

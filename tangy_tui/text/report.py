@@ -21,7 +21,7 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_actions import by_staff, did_words
+from tangy_tui.text.staff_actions import by_staff, chosen_words, did_words, with_behaviour
 from tangy_tui.text.times import length, time_of_day
 
 if TYPE_CHECKING:
@@ -313,10 +313,12 @@ def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, s
             yield at, *told, isinstance(what, Noted) and what.did == "pace"
         if isinstance(what, Moved) and what.move.answer:
             answered = (what.move.answer, what.move.target)
+        elif isinstance(what, Noted) and what.did == "answered":
+            answered = (what.detail, what.person)
         elif isinstance(what, Done) and what.teacher:
             whom = what.target or ""
-            if answered != (what.behaviour, whom):  # after staff took over
-                words = _answer_words(replay.activity, what.behaviour, whom, name)
+            if answered != (what.behaviour, whom):  # after staff took over, in an older log
+                words = chosen_words(replay.activity, what.behaviour, whom, name)
                 yield at - _lasted(what, replay), what.teacher, words, False
             answered = ("", "")
 
@@ -331,19 +333,15 @@ def _lasted(done: Done, replay: GameReplay) -> timedelta:
 def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple[str, str] | None:
     what = moment.what
     if isinstance(what, Noted):
-        return (what.by, did_words(what, name)) if by_staff(what) else None
+        return (
+            (what.by, did_words(with_behaviour(what, activity), name)) if by_staff(what) else None
+        )
     if not isinstance(what, Moved) or not what.move.by or what.move.kind not in STAFF_MOVES:
         return None
     move, fault = what.move, what.fault
     if move.answer:
-        return move.by, _answer_words(activity, move.answer, move.target, name)
+        return move.by, chosen_words(activity, move.answer, move.target, name)
     return move.by, f"{STAFF_MOVES[move.kind]}: {fault.name}"
-
-
-def _answer_words(activity: Activity | None, behaviour: str, target: str, name: Name) -> str:
-    """Tell which behaviour staff chose, and for whom."""
-    does = behaviour if activity is None else activity.behaviour_words(behaviour)
-    return f"told Tangy what to do: {does}{f' ({name(target)})' if target else ''}"
 
 
 def fault_outcome(fault: Fault, status: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.staff_records import StaffActionKind
@@ -12,6 +13,7 @@ from tangy_tui.monitoring.replay import Noted
 from tangy_tui.text.control import autonomy_words
 
 if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
     from tangy_tui.text.situations import Name
 
 OF_THE_PROGRAM: tuple[StaffActionKind, ...] = (
@@ -27,6 +29,23 @@ PERSON_ID = re.compile(r"\b[a-z]+\d+\b")
 def by_staff(noted: Noted) -> bool:
     """Return whether staff did it, and not Tangy or the program."""
     return bool(noted.by) and noted.by != TANGY and noted.did not in OF_THE_PROGRAM
+
+
+def with_behaviour(noted: Noted, activity: Activity | None) -> Noted:
+    """Replace the behaviour that staff chose by its words, if the activity is known."""
+    if activity is None or noted.did != "answered":
+        return noted
+    return replace(noted, detail=activity.behaviour_words(noted.detail))
+
+
+def chosen_words(activity: Activity | None, behaviour: str, target: str, name: Name) -> str:
+    """Tell which behaviour staff chose, and for whom."""
+    does = behaviour if activity is None else activity.behaviour_words(behaviour)
+    return _told_to_do(does, name(target) if target else "")
+
+
+def _told_to_do(does: str, person: str) -> str:
+    return f"told Tangy what to do: {does}{f' ({person})' if person else ''}"
 
 
 def action_line(noted: Noted, name: Name) -> str:
@@ -55,6 +74,8 @@ def did_words(noted: Noted, name: Name) -> str:
             return "took over, to say what Tangy does next"
         case "gave back":
             return "let Tangy go on by itself"
+        case "answered":
+            return _told_to_do(detail, person)
         case "ended":
             return "ended the game"
         case "autonomy":
@@ -123,6 +144,8 @@ def action_words(noted: Noted, name: Name) -> str:
             return "control was taken over"
         case "gave back":
             return "Tangy went on by itself"
+        case "answered":
+            return f"somebody {_told_to_do(detail, person)}"
         case "ended":
             return "the game was ended"
         case "autonomy":

@@ -39,6 +39,10 @@ from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.verification import Asked, Reply, Say, Verified
 from tangy_tui.monitoring.fault import Diagnosed
+from tangy_tui.monitoring.games import read_games
+from tangy_tui.monitoring.replay import read_replays
+from tangy_tui.text.log import replay_lines
+from tangy_tui.text.report import staff_rows
 from tests.hw.links import FakeLink
 from tests.support.live_worlds import live_world
 
@@ -176,7 +180,17 @@ def test_staff_take_over_choose_a_behaviour_and_give_back(live: Played) -> None:
     control.next()
     assert kinds(control.apply(GiveBack())) == ["given back"] and live.phase == "running"
     assert kinds(control.apply(GiveBack())) == ["nothing asked"]
-    assert [did for did, _ in live.logged()] == ["took over", "took over", "gave back"]
+    logged = [did for did, _ in live.logged()]
+    assert logged == ["took over", "answered", "took over", "gave back"]
+    workspace = live.workspace
+    activity, name = workspace.activity, workspace.name
+    games = read_games(workspace.store)
+    (replay,) = read_replays(workspace.store, games, {activity.name: activity}, workspace.names)
+    lines = [line.strip().partition("  ")[2] for line in replay_lines(replay, activity, name)]
+    answered = lines.index("*  Ada told Tangy what to do: tell a joke.")
+    assert lines[answered + 1] == "Tell a joke, as Ada said."
+    words = [words for _, _, words in staff_rows([replay], name)]
+    assert words.count("told Tangy what to do: tell a joke") == 1
     assert live.next() == ["call number"]
 
 
