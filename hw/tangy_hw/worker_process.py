@@ -270,6 +270,27 @@ class WorkerProcess:
             self.over.set_result(self.how)
 
 
+def cpu_seconds(pid: int | None) -> float | None:
+    """Return the CPU time in s of a process and its children; None if unknown."""
+    try:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()
+    except OSError:
+        children = []
+    own = _ticks(pid)
+    if own is None:
+        return None
+    return (own + sum(_ticks(int(child)) or 0 for child in children)) / os.sysconf("SC_CLK_TCK")
+
+
+def _ticks(pid: int | None) -> int | None:
+    """Return the clock ticks of CPU time of a process; None if it does not exist."""
+    try:
+        told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        return int(told[11]) + int(told[12])
+    except (OSError, ValueError, IndexError):
+        return None
+
+
 def _fail(answer: Future[Any], error: Exception) -> None:
     with suppress(InvalidStateError):  # cancelled, or answered just now
         answer.set_exception(error)

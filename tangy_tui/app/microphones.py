@@ -7,12 +7,13 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+from tangy_profiles.activity import LISTENING
 from tangy_profiles.errors import TangyError
 from tangy_profiles.people_records import MicrophoneChecked, MicrophoneForgotten
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Store
 from tangy_tui.speech.calibration import SHIFTS, CalibrationResult
-from tangy_tui.speech.evidence import MODES, USUAL, EvidenceSettings
+from tangy_tui.speech.evidence import USUAL, EvidenceSettings
 
 
 def microphone(source: str) -> str:
@@ -54,13 +55,13 @@ def settings_for(store: Store, source: str | None, mode: str = "tiers") -> Evide
     Args:
         store: the log with the checks.
         source: its name, as in `tangy_hw.audio.sources`; None for no particular one.
-        mode: one of MODES.
+        mode: one of LISTENING.
 
     Raises:
         TangyError: there is no such mode.
     """
-    if mode not in MODES:
-        raise TangyError(plain(f"--mode {mode[:40]!r} is not known; {nearest(mode, MODES)}"))
+    if mode not in LISTENING:
+        raise TangyError(plain(f"--mode {mode[:40]!r} is not known; {nearest(mode, LISTENING)}"))
     stored = None if source is None else _stored(store, source)
     return replace(stored or USUAL, mode=mode)
 

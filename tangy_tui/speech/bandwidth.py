@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tangy_tui.speech.evidence import RATE
+from tangy_hw.audio.wav import RATE, pcm_of, samples_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,7 +33,7 @@ def widened(pcm: bytes) -> bytes:
     """
     import numpy as np
 
-    samples = np.frombuffer(pcm[: len(pcm) // 2 * 2], "<i2").astype(np.float64)
+    samples = samples_of(pcm)
     padded = np.pad(samples, (WINDOW, 2 * WINDOW))
     count = (len(padded) - WINDOW) // HOP + 1
     window = np.sqrt(np.hanning(WINDOW + 1)[:WINDOW])
@@ -50,9 +50,7 @@ def widened(pcm: bytes) -> bytes:
     made = np.zeros(HOP * (count + 1))
     made[:-HOP] += frames[:, :HOP].ravel()
     made[HOP:] += frames[:, HOP:].ravel()
-    whole = made[WINDOW : WINDOW + len(samples)]
-    cut: bytes = np.clip(np.rint(whole), -32_768, 32_767).astype("<i2").tobytes()
-    return cut
+    return pcm_of(made[WINDOW : WINDOW + len(samples)])
 
 
 def _lacks_upper_band(spectra: Spectra) -> bool:

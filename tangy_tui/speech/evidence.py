@@ -6,32 +6,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
-from tangy_hw.audio.wav import RATE
-from tangy_profiles.activity import LISTENING
-
-__all__ = [
-    "LONGEST",
-    "RATE",
-    "USUAL",
-    "AcousticEvidence",
-    "DecoderVocabulary",
-    "EvidenceSettings",
-    "Expecting",
-]
+from tangy_hw.audio.wav import RATE as RATE
 
 Expecting = Literal["commands", "answers"]
 """What to recognise: commands, or the answer to a question (yes and no)."""
 
 LONGEST = 15  # s; the longest utterance to decode
-MODES = LISTENING
 
 
 @dataclass(frozen=True, slots=True)
 class EvidenceSettings:
     """Recognition settings, which depend on the microphone and the room.
 
-    `mode` is one of MODES. `garbage` is the weight of all other speech, against 1 for the commands;
-    `shift` is added to the acceptance threshold: above 0 is stricter.
+    `mode` is one of LISTENING. `garbage` is the weight of all other speech, against 1 for the
+    commands; `shift` is added to the acceptance threshold: above 0 is stricter.
     """
 
     ONLY: ClassVar[bool] = True

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 from tangy_hw.audio.meter import CLIPPED, QUIET, RAILS
+from tangy_hw.audio.utterances import frame_levels
 
-FRAME = 320  # samples, 20 ms
 LOUD = 0.9  # quantile of the frames that defines the loudness of a voice or a room
 CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
 LEAST = 0.33  # quantisation steps; the least possible loudness
@@ -24,10 +24,10 @@ def loudness(pcm: bytes, share: float) -> float:
     """Return a quantile (`share`) of the loudness of a sound's frames, in dB below full scale."""
     import numpy as np
 
-    frames = np.frombuffer(pcm[: len(pcm) // (2 * FRAME) * (2 * FRAME)], "<i2").reshape(-1, FRAME)
-    if not len(frames):
+    frames = frame_levels(pcm)
+    if not frames:
         return -100.0
-    level = float(np.quantile(frames.astype(np.float64).std(axis=1), share))
+    level = float(np.quantile(frames, share))
     return 20 * math.log10(max(level, LEAST) / 32_768)
 
 

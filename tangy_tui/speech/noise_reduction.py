@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tangy_hw.audio.wav import pcm_of, samples_of
 from tangy_tui.speech.bandwidth import widened
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def cleaned(pcm: bytes) -> bytes:
     """
     import numpy as np
 
-    samples = np.frombuffer(pcm[: len(pcm) // 2 * 2], "<i2").astype(np.float64)
+    samples = samples_of(pcm)
     count = (len(samples) - WINDOW) // HOP + 1
     if count < FEWEST:
         return pcm
@@ -66,8 +67,7 @@ def cleaned(pcm: bytes) -> bytes:
         made[first : first + WINDOW] += frame
         weight[first : first + WINDOW] += window**2
     made[HOP * (count - 1) + WINDOW :] = 0.0
-    cut: bytes = np.clip(np.rint(made / weight), -32_768, 32_767).astype("<i2").tobytes()
-    return cut
+    return pcm_of(made / weight)
 
 
 def surrounded(pcm: bytes) -> bytes:
@@ -78,7 +78,7 @@ def surrounded(pcm: bytes) -> bytes:
     """
     import numpy as np
 
-    samples = np.frombuffer(pcm[: len(pcm) // 2 * 2], "<i2").astype(np.float64)
+    samples = samples_of(pcm)
     count = len(samples) // HOP
     if count < FEWEST:
         return pcm
@@ -87,8 +87,7 @@ def surrounded(pcm: bytes) -> bytes:
     hiss = np.random.default_rng(0).normal(size=len(samples) + 2 * AROUND)
     whole = np.concatenate([hiss[:AROUND] * level, samples, hiss[-AROUND:] * level])
     whole[AROUND:-AROUND] += hiss[AROUND:-AROUND] * LEAST_QUIET
-    made: bytes = np.clip(np.rint(whole), -32_768, 32_767).astype("<i2").tobytes()
-    return made
+    return pcm_of(whole)
 
 
 def _gains(posterior: Samples) -> Samples:

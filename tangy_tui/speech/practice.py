@@ -13,6 +13,7 @@ from time import perf_counter
 from typing import Any, Literal, Protocol
 
 from tangy_hw.audio.wav import SoundError, read_wav, seconds_cut_off
+from tangy_hw.worker_process import cpu_seconds
 from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.labels import STOP, LabelledRecordings, UtteranceLabel
@@ -25,7 +26,7 @@ from tangy_tui.speech.evidence import (
     EvidenceSettings,
     Expecting,
 )
-from tangy_tui.speech.recogniser import SpeechUnavailable, cpu_seconds
+from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.speech.transcription import tier_of
 from tangy_tui.speech.understanding import understand, wanted
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import asyncio
 import base64
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tangy_hw.worker_process import WorkerError, WorkerProcess
+from tangy_hw.worker_process import WorkerError, WorkerProcess, cpu_seconds
 from tangy_profiles.codec import decode, encode
 from tangy_profiles.errors import TangyError
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, DecoderVocabulary, Expecting
@@ -336,27 +335,6 @@ def _answer(said: dict[str, Any]) -> dict[str, Any]:
     if "error" in said:
         raise SpeechUnavailable(str(said["error"]))
     return said
-
-
-def cpu_seconds(pid: int | None) -> float | None:
-    """Return the CPU time in s of a process and its children; None if unknown."""
-    try:
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()
-    except OSError:
-        children = []
-    own = _ticks(pid)
-    if own is None:
-        return None
-    return (own + sum(_ticks(int(child)) or 0 for child in children)) / os.sysconf("SC_CLK_TCK")
-
-
-def _ticks(pid: int | None) -> int | None:
-    """Return the clock ticks of CPU time of a process; None if it does not exist."""
-    try:
-        told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-        return int(told[11]) + int(told[12])
-    except (OSError, ValueError, IndexError):
-        return None
 
 
 def _forget(said: list[bytes]) -> None:

@@ -27,7 +27,7 @@ from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_source import CameraSource, find_camera
 from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import Pairing
-from tangy_hw.worker_process import WorkerError, WorkerProcess
+from tangy_hw.worker_process import WorkerError, WorkerProcess, cpu_seconds
 from tangy_profiles.codec import encode
 from tangy_profiles.worker_lines import LONGEST_LINE
 from tangy_tui.app import device_simulator
@@ -371,3 +371,17 @@ class TestOwners:
         await until(lambda: "signal 9" in why(owner), PATIENCE)
         await until(lambda: owner.pid not in (None, first), PATIENCE)
         await self.closes(owner, starting)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+async def test_the_cpu_time_of_a_process_includes_its_children() -> None:
+    busy = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", busy, start_new_session=True
+    )
+    try:
+        await until(lambda: (cpu_seconds(process.pid) or 0.0) > 1.0)
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)
+        await process.wait()

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import signal
-import sys
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from pathlib import Path
@@ -21,7 +19,6 @@ from tangy_tui.speech.recogniser import (
     END_SECONDS,
     Recogniser,
     SpeechUnavailable,
-    cpu_seconds,
 )
 from tests.learning.speech_fakes import PATIENCE, Workers, soon
 
@@ -355,17 +352,3 @@ class TestClosing:
 
 def _runs(recogniser: Recogniser) -> bool:
     return recogniser.pid is not None
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
-async def test_the_cpu_time_of_a_process_includes_its_children() -> None:
-    busy = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, "-c", busy, start_new_session=True
-    )
-    try:
-        await soon(lambda: (cpu_seconds(process.pid) or 0.0) > 1.0)
-    finally:
-        os.killpg(process.pid, signal.SIGKILL)
-        await process.wait()

@@ -34,7 +34,7 @@ def split(pcm: bytes) -> list[bytes]:
     begin, loud, quiet = -1, 0, 0  # start of an utterance; its loud and trailing quiet frames
     recent: deque[bool] = deque(maxlen=BEFORE)
     place = 0
-    for place, level in enumerate(_levels(pcm), 1):
+    for place, level in enumerate(frame_levels(pcm), 1):
         levels.append(level)
         is_loud = level > max(QUIETEST, LOUDER * sorted(levels)[len(levels) // 10])
         if begin < 0:
@@ -58,8 +58,11 @@ def _utterance(pcm: bytes, begin: int, end: int, loud: int, quiet: int) -> list[
     return [pcm[2 * FRAME * begin : 2 * FRAME * end]] if loud * FRAME >= SHORTEST * RATE else []
 
 
-def _levels(pcm: bytes) -> list[float]:
-    """Return the root mean square of every frame without its mean (the device's offset)."""
+def frame_levels(pcm: bytes) -> list[float]:
+    """Return the root mean square of each frame (20 ms), 0 to 32,768.
+
+    The mean, which is the device's offset, is left out.
+    """
     import numpy as np
 
     whole = len(pcm) // (2 * FRAME) * (2 * FRAME)
@@ -73,6 +76,6 @@ def _floor_of(pcm: bytes) -> float:
 
     A recording of even loudness is all hum: no voice is that even.
     """
-    levels = sorted(_levels(pcm)) or [0.0]
+    levels = sorted(frame_levels(pcm)) or [0.0]
     quiet, loudest = levels[len(levels) // 10], levels[-1]
     return max(1.0, quiet if quiet > loudest / 3 else min(quiet, loudest / 10))

@@ -71,7 +71,7 @@ def decode_wav(content: bytes, name: str) -> bytes:
     if form.native:
         sound = sound[: len(sound) // 2 * 2]
     else:
-        sound = _to_pcm(_resampled(_mono(sound, form), form.rate))
+        sound = pcm_of(32_767 * _resampled(_mono(sound, form), form.rate))
     if not sound:
         raise SoundError(f"{name}: holds no samples.")
     return sound
@@ -209,7 +209,15 @@ def _resampled(samples: Samples, rate: int) -> Samples:
     return made
 
 
-def _to_pcm(samples: Samples) -> bytes:
+def samples_of(pcm: bytes) -> Samples:
+    """Return sound (s16le) as samples (n,), -32,768 to 32,767, without half a sample at the end."""
     import numpy as np
 
-    return np.clip(np.rint(samples * 32_767), -32_768, 32_767).astype("<i2").tobytes()
+    return np.frombuffer(pcm[: len(pcm) // 2 * 2], "<i2").astype(np.float64)
+
+
+def pcm_of(samples: Samples) -> bytes:
+    """Return samples (n,) as sound (s16le), rounded and clipped."""
+    import numpy as np
+
+    return np.clip(np.rint(samples), -32_768, 32_767).astype("<i2").tobytes()
