@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 
-from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.app.game_commands import ClaimCard, GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.in_progress import ProgressLines
@@ -13,7 +14,7 @@ from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, Resume
 from tangy_tui.learning.verification import NotUnderstood, Verification
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
-from tangy_tui.text.control import noted_words, waits_words
+from tangy_tui.text.control import claimed_words, noted_words, waits_words
 from tangy_tui.text.games import game_lines
 from tangy_tui.text.situations import Name
 
@@ -70,11 +71,27 @@ class GameTelling:
         self.write_all(filter(None, self._also(events)))
 
     def in_turn(self, command: GameCommand) -> Sequence[ControllerOutput]:
-        """Carry out a command once the robot has done its present step; tell if that takes long."""
+        """Carry out a command once the robot has done its present step; tell if that takes long.
+
+        The result of a claim is told at once: the robot needs a while to tell the group.
+        """
         controller = self._controller
-        if controller.robot.there and not controller.wait_for_turn(SOON_SECONDS):
-            self.write(waits_words(command, self._name))
+        if controller.robot.there:
+            if judged := self._judged(command):
+                self.write(judged)
+            elif not controller.wait_for_turn(SOON_SECONDS):
+                self.write(waits_words(command, self._name))
         return controller.apply(command)
+
+    def _judged(self, command: GameCommand) -> str:
+        """Return the result of a claim by the numbers called so far, "" if it is none."""
+        plan = self._controller.plan
+        claimed = plan.judged(command) if isinstance(command, ClaimCard) else None
+        if claimed is None:
+            return ""
+        if claimed.kind is not None and not self._controller.stepping:
+            claimed = replace(claimed, told=0.0)  # nothing comes before it
+        return claimed_words(claimed, self._name, plan.calling)
 
     def write(self, line: str) -> None:
         """Write a line."""

@@ -12,7 +12,7 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import AskFor, ComesIn, GameCommand, GoesAway
+from tangy_tui.app.game_commands import AskFor, ClaimCard, ComesIn, GameCommand, GoesAway
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.in_progress import ProgressLines
@@ -88,6 +88,27 @@ def test_lines_tell_at_once_that_a_command_waits_for_the_step(robot: Robot) -> N
     robot.next(1)
     threads[0].join()
     assert told == [waits_words(command, str), noted_words(StaffNote("goes", "user2"), str)]
+
+
+def test_lines_tell_the_result_of_a_claim_before_the_step_is_over(robot: Robot) -> None:
+    control, told = robot.control, list[str]()
+    command = ClaimCard(17, "user3")
+    telling = GameTelling(control, str, told.append, ProgressLines(control, str), lambda events: [])
+    threads = list[Thread]()
+    at_once = "Card 17 (user3) does not win yet. Tangy finishes this, then tells everybody."
+
+    def meanwhile(do: str, time: float) -> None:
+        robot.link.meanwhile = lambda do, time: None
+        threads.append(Thread(target=lambda: telling.tell(telling.in_turn(command))))
+        threads[-1].start()
+        wait_until(lambda: told == [at_once])
+
+    robot.link.meanwhile = meanwhile
+    robot.next(1)
+    threads[0].join()
+    assert told[0] == at_once and "does not win yet. Tangy tells everybody: " in told[1]
+    telling.in_turn(command)
+    assert told[2] == "Card 17 (user3) does not win yet."
 
 
 def test_who_leaves_and_comes_back_during_a_step_is_here(robot: Robot) -> None:
