@@ -29,8 +29,8 @@ class JoiningGames(EndingGames):
 
     admission: Admission | None = None
     """Adds people to the participants; None: nobody can join."""
-    welcomes = ""
-    """The name of the person for whom the robot drives to the front, and is set up there."""
+    welcomes: tuple[str, ...] = ()
+    """The names of the people for whom the robot drives to the front, and is set up there."""
     joined = False
     """Whether the game was interrupted because a person joined, and is to be resumed with them."""
     goes_on = False
@@ -61,6 +61,7 @@ class JoiningGames(EndingGames):
         joins = self.admission.admit(command)
         self.note("came", person=joins.about, seat=self.admission.seat_of(joins.about))
         if self.joined:  # the robot is set up once, for all who have come
+            self.welcomes = (*self.welcomes, command.name)
             return [joins]
         self.supervision.interrupt()
         self.joined, self.goes_on, self.going = True, self.going, True
@@ -69,13 +70,13 @@ class JoiningGames(EndingGames):
 
     def _goes_to_front(self, name: str) -> bool:
         """Drive to the front for a new person; return whether the robot got there unstopped."""
-        self.welcomes, arrived = name, False
+        self.welcomes, arrived = (name,), False
         try:
             with suppress(DeviceError):
                 arrived = self.robot.go_to_front()
         finally:
             if not arrived:
-                self.welcomes = ""
+                self.welcomes = ()
         return arrived
 
     def admit_no_more(self) -> None:

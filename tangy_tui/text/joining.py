@@ -50,14 +50,19 @@ GOES_ON = "the game goes on"
 """The header while Tangy sets itself up for a new person."""
 
 
-def setting_up_words(name: str) -> str:
-    """Tell in the header that Tangy sets itself up for a new person."""
-    return f"sets itself up for {name}"
+def setting_up_words(names: Sequence[str]) -> str:
+    """Tell in the header that Tangy sets itself up for new people."""
+    return f"sets itself up for {listed(names)}"
 
 
-def sets_up_words(name: str) -> str:
-    """Tell that Tangy sets itself up for a new person, and what follows."""
-    return f"Tangy sets itself up for {name}. Then the game goes on."
+def sets_up_words(names: Sequence[str]) -> str:
+    """Tell that Tangy sets itself up for new people, and what follows."""
+    return f"Tangy sets itself up for {listed(names)}. Then the game goes on."
+
+
+def joined_words(names: Sequence[str]) -> str:
+    """Tell that people have joined."""
+    return f"{listed(names)} {'has' if len(names) == 1 else 'have'} joined."
 
 
 WHERE = "Where does {} sit?"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.robot import Robot
 from tangy_tui.text.endings import ending_words
+from tangy_tui.text.numbers import listed
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -37,11 +38,11 @@ LOOKS_ROUND = "Tangy does not know where it is: it turns on the spot, then drive
 MAY_MOVE = "Tangy may move again."
 
 
-def starting_again_words(name: str) -> str:
-    """Tell that the robot is switched on again for a new person."""
+def starting_again_words(names: Sequence[str]) -> str:
+    """Tell that the robot is switched on again for new people."""
     return (
-        f"Tangy sets itself up for {name}: its devices are being started again. It stands still "
-        "until the game goes on."
+        f"Tangy sets itself up for {listed(names)}: its devices are being started again. It stands "
+        "still until the game goes on."
     )
 
 

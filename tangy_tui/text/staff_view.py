@@ -13,7 +13,7 @@ from tangy_tui.app.game_commands import Autonomy
 from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import reason_of
 
 Fact: TypeAlias = str | tuple[str, ...]
@@ -163,9 +163,9 @@ def looks_words(name: str, what: str) -> str:
     return f"Tangy looks at the {what} ({name})."
 
 
-def welcomes_words(name: str) -> str:
-    """Tell that the robot drives to the front, to be set up for a new person."""
-    return f"Tangy drives to the front, and sets itself up for {name} there."
+def welcomes_words(names: Sequence[str]) -> str:
+    """Tell that the robot drives to the front, to be set up for new people."""
+    return f"Tangy drives to the front, and sets itself up for {listed(names)} there."
 
 
 def said_words(said: str) -> str:

@@ -222,7 +222,7 @@ async def _switch_on(
         profile.title,
         robot.cancel,
         lambda: parts_lines(robot.parts, robot.done, profile),
-        joins="" if before is None else before.control.welcomes,
+        joins=() if before is None else before.control.welcomes,
     )
     robot.failure = ""
     program.push_screen(dialog)

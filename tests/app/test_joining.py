@@ -41,6 +41,7 @@ from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.control import noted_words
+from tangy_tui.text.joining import joined_words, sets_up_words
 from tangy_tui.text.log import session_lines
 from tests.hw.links import FakeLink, LaidCard
 from tests.support.live_worlds import live_world
@@ -440,7 +441,7 @@ def test_staff_read_whom_tangy_drives_to_the_front_for(
     workspace = Workspace(taught)
     game = LiveGame(workspace)
     game.play(3)
-    seen = list[str]()
+    seen = list[tuple[str, ...]]()
 
     def drives(person: str) -> bool:
         seen.append(game.control.welcomes)
@@ -448,7 +449,12 @@ def test_staff_read_whom_tangy_drives_to_the_front_for(
 
     monkeypatch.setattr(game.world, "drive", drives)
     game.told(Joins("Berta"))
-    assert seen == ["Berta"] and str(game.control.phase) == "joining"
+    assert seen == [("Berta",)] and str(game.control.phase) == "joining"
+    game.told(Joins("Clara"))  # before the robot is set up again
+    assert sets_up_words(game.control.welcomes).startswith(
+        "Tangy sets itself up for Berta and Clara."
+    )
+    assert joined_words(["Berta", "Clara"]) == "Berta and Clara have joined."
     workspace.close()
 
 

@@ -210,7 +210,7 @@ async def test_a_question_that_is_open_when_somebody_joins_is_answered_first(
         first = live(pilot)
         robot.links[0].free = False  # it is on its way to the front
         await pilot.press(":", *"add Berta", "enter")
-        await until_shown(pilot, lambda: first.control.welcomes == "Berta")
+        await until_shown(pilot, lambda: first.control.welcomes == ("Berta",))
         await pilot.press("escape")
         await until_shown(pilot, lambda: "Leave in the middle of the game?" in pilot.text())
         robot.links[0].free = True

@@ -84,10 +84,10 @@ async def test_the_dialog_shows_the_progress_and_how_to_cancel(
 
 
 @pytest.mark.parametrize(
-    ("joins", "until_when"), [("", STARTING), ("Berta", starting_again_words("Berta"))]
+    ("joins", "until_when"), [((), STARTING), (("Berta",), starting_again_words(("Berta",)))]
 )
 async def test_the_dialog_tells_until_when_the_robot_stands_still(
-    run: Run, joins: str, until_when: str
+    run: Run, joins: tuple[str, ...], until_when: str
 ) -> None:
     dialog = SwitchingOnDialog("Tangy", lambda: None, joins=joins)
     async with run() as pilot:

@@ -38,7 +38,7 @@ class SwitchingOnDialog(Dialog[None]):
         call_off: Callable[[], None],
         parts: Callable[[], Sequence[str]] = tuple,
         *,
-        joins: str = "",
+        joins: Sequence[str] = (),
     ) -> None:
         """Create the dialog.
 
@@ -46,13 +46,13 @@ class SwitchingOnDialog(Dialog[None]):
             title: the robot's title.
             call_off: cancels the start; may be called more than once.
             parts: returns lines with the parts that are started, and the one in progress.
-            joins: the name of a new person, with whom a game goes on then; "" for a new game.
+            joins: the names of new people, with whom a game goes on then; none for a new game.
         """
         super().__init__(None)
         self._title = clean(title)
         self._call_off = call_off
         self._parts = parts
-        self._then = starting_again_words(clean(joins)) if joins else STARTING
+        self._then = starting_again_words([*map(clean, joins)]) if joins else STARTING
         self._leaves = KEEPS_GAME if joins else LEAVES_OFF
         self._told: Sequence[str] = ()
         self.called_off = False

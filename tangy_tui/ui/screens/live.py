@@ -28,9 +28,8 @@ from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameChanged
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.text.changes import changed_words
 from tangy_tui.text.control import FINDS_ITS_PLACE, WAITS_FOR_YOU, short_going_words
-from tangy_tui.text.joining import GOES_ON, setting_up_words
+from tangy_tui.text.joining import GOES_ON, joined_words, setting_up_words
 from tangy_tui.text.live_games import LOOKS_ROUND, frozen_words
 from tangy_tui.text.live_news import seated_words
 from tangy_tui.text.missing_devices import missing_words
@@ -176,12 +175,9 @@ class LiveScreen(LiveStaff):
         for seated in self._seats.news(events, self.world.sitting):
             self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
-        for event in events:
-            # a small window hides the log
-            if isinstance(event, GameChanged) and event.what == "joined":
-                words = changed_words(event, self._workspace.activity, self._workspace.name)
-                if not self.query_one(LogView).display:
-                    self.notify(words, markup=False)
+        joined = [e.person for e in events if isinstance(e, GameChanged) and e.what == "joined"]
+        if joined and not self.query_one(LogView).display:  # a small window hides the log
+            self.notify(joined_words([*map(self._workspace.name, joined)]), markup=False)
 
     def track(self) -> None:
         """Draw the robot's pose and its estimates; send it a heartbeat."""
