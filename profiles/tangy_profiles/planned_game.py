@@ -207,6 +207,10 @@ class PlannedGame:
         here = (person for person in self.people if person not in self.away)
         return next((person for person in here if person not in self._visited), "")
 
+    def calls_unvisited(self, person: str) -> int:
+        """Return how many numbers have been called since the last visit to a person."""
+        return len(self.called_now) - self._visited.get(person, 0)
+
     def _visit_due(self) -> DueChange | None:
         """Return the visit that is due or put off; a visit delays no request.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection
-from functools import partial
+from contextlib import suppress
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
@@ -95,12 +95,13 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("visits on", "also visits people who do not ask; or: visits off"),
     ("here NAME, left NAME", "somebody has come, or has left"),
     ("add NAME", "a new person joins; on a seat: add NAME on seat 3; only for today: guest NAME"),
-    ("ask for NAME", "asks for help for somebody who cannot"),
+    ("help NAME, ask for NAME", "sends Tangy to somebody who cannot ask"),
+    ("why not NAME", "says when Tangy goes to somebody, and why not now; ask in any words"),
     ("NAME: B", "tells Tangy what a person answers or does, in activities such as a quiz"),
     ("answer: B", "the same for the person the game is waiting for"),
     ("void NAME", "the last response of somebody does not count"),
     ("drive left 2", "drives by hand for 2 s: forward, back, left, right"),
-    ("where, why", "says what Tangy sees; what it does now and next, and why"),
+    ("where, why", "says what Tangy sees; what it does now, why, and who waits"),
     ("what, faults", "says what to do about a fault, and all faults of this game"),
     ("seen, expert, reached, clear", "about a fault that halts Tangy"),
     ("wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, called, over"),
@@ -112,6 +113,26 @@ _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| sec
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
 _TOLD = re.compile(r"(.{1,60}?)(:| says| answers| answered) (\S.*)", re.I)
 _ANSWER = re.compile(r"(?:answer:|the answer is) (\S.*)", re.I)
+_POLITE = r"(?:please |can you |could you |tangy,? |let tangy |now |you )*"
+_GO_THERE = re.compile(
+    rf"{_POLITE}(?:help(?: out)?|assist|visit|look after|see to|attend to|take care of|check on"
+    r"|go(?: over| back| first| now| next)? (?:to|and help|and see|and visit|help|see|visit)"
+    r"|(?:drive|come|move)(?: over| back)? to|send (?:tangy|it|the robot|help) to)"
+    r" (.+?)(?: and help(?: her| him| them)?)?(?:,? (?:please|now|first|next|quickly|too))*",
+    re.I,
+)
+_NEEDS = re.compile(
+    r"(.+?) (?:needs|wants|would like|asks for|is asking for|asked for|has asked for)"
+    r"(?: some| a| tangy's| your)? (?:help|visit|hand|assistance|you|tangy|the robot)"
+    r"(?:,? (?:please|now|first|next|too))*",
+    re.I,
+)
+"""Ways to ask for help for a person."""
+_NO_PERSON = re.compile(
+    r"(?:(?:front|home|me|us|him|her|them|it|you|everybody|everyone|all|people|somebody|someone"
+    r"|nobody|i|we|user|person|place|table)$|(?:the|a|your|my|this|that|with|at|in|out|to) )"
+)
+"""What names nobody."""
 _DIAL = re.compile(r"autonomy (\w+)")
 
 
@@ -163,6 +184,31 @@ def read_command(
     return None
 
 
+def read_help(text: str, find_person: Callable[[str], str]) -> AskFor | None:
+    """Parse plain words that ask for help for a person: "help Rosa", "Rosa needs help".
+
+    While Tangy asks what to do next, such words are the answer instead.
+
+    Args:
+        text: what was typed.
+        find_person: returns the id of a person by name or id.
+
+    Raises:
+        TangyError: nobody is called so; one sentence.
+    """
+    said = " ".join(text.split()).strip(" .!?")
+    if (there := _GO_THERE.fullmatch(said)) and not _NO_PERSON.match(there[1].casefold()):
+        try:
+            return AskFor(find_person(there[1]))
+        except TangyError:
+            if there[1].count(" ") <= 1:
+                raise
+    if needs := _NEEDS.fullmatch(said):
+        with suppress(TangyError):  # it may be an answer in words
+            return AskFor(find_person(needs[1]))
+    return None
+
+
 def read_telling(line: str, find_person: Callable[[str], str]) -> Tell:
     """Parse a report about a person: "NAME: words", or words about the person the game waits for.
 
@@ -191,11 +237,24 @@ def _read_told(said: str, find_person: Callable[[str], str]) -> Tell | None:
 
 
 def command_reader(
-    activity: Activity, find_person: Callable[[str], str]
+    activity: Activity,
+    find_person: Callable[[str], str],
+    asks: Callable[[], bool] = lambda: False,
 ) -> Callable[[str], GameCommand | None]:
-    """Return a command parser for games of an activity; see `read_command`."""
+    """Return a command parser for games of an activity; see `read_command`.
+
+    Args:
+        activity: the activity.
+        find_person: returns the id of a person by name or id.
+        asks: returns whether staff say what Tangy does next; then "go to Rosa" is no command.
+    """
     title = frozenset(activity.title.casefold().split())
-    return partial(read_command, find_person=find_person, game=title, rules=activity.rules)
+
+    def read(text: str) -> GameCommand | None:
+        command = read_command(text, find_person=find_person, game=title, rules=activity.rules)
+        return read_help(text, find_person) if command is None and not asks() else command
+
+    return read
 
 
 def read_answer(text: str) -> Reply | None:

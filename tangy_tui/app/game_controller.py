@@ -299,9 +299,9 @@ class GameController(HandingOver):
                 return self._confirm(yes=yes)
             case Joins():
                 return self._let_in(command)
-            case AskFor() | Tell() | HasCard():
+            case Tell() | HasCard():
                 return [self.robot.do(command)]
-            case CallAgain() | Drive():
+            case CallAgain() | Drive() | AskFor():
                 return [self.refuses(command) or self.robot.do(command)]
             case VoidResponse(person):
                 return [self._voided(person)]
@@ -343,6 +343,8 @@ class GameController(HandingOver):
         """Return why a command is refused at once, before its turn; None if it is not."""
         if isinstance(command, CallAgain | Drive):
             return self.refusal(asking=False)
+        if isinstance(command, AskFor) and (self.supervision.over or not self.robot.there):
+            return None  # another refusal comes first
         return self.plan.refuses(command)
 
     def refusal(self, *, asking: bool = True) -> StaffNote | None:

@@ -14,6 +14,11 @@ class HandingOver(PausingGames):
     taking_over: bool
     """Whether staff say what Tangy does next."""
 
+    @property
+    def asks_next(self) -> bool:
+        """Whether staff say in words what Tangy does next, or soon will."""
+        return self.taking_over or self.supervision.question is not None
+
     def _take_over(self) -> list[Result]:
         if refused := self.refusal():
             return [refused]

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Literal
+
+from tangy_profiles.errors import TangyError
 
 Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "patterns"]
 """Questions about the program or the game; they change nothing."""
@@ -26,14 +31,18 @@ WHO_IS_HERE = ("people", "who", "who is here", "who is there", "who waits")
 
 _TANGY = r"(?:you|it|tangy|the robot|he|she)"
 _WHY = re.compile(
-    r"why(?: (?:that|this|now|not|so))?"
+    r"why(?: (?:that|this|now|not|so|not now|not yet))?"
     rf"|(?:why|what) (?:is|are|does|do|did|will|would) {_TANGY}"
     r"(?: (?:doing|do|going to do|up to|waiting|waiting for|wait|wait for|stand|standing))"
     r"(?: (?:that|this|it|there|here|still))?(?: (?:now|next|then|right now|at the moment))?"
     r"|what(?: is|'s|s) (?:happening|going on|next|up)(?: here)?(?: now| next)?"
     r"|what (?:happens|comes) (?:now|next)|what next|what now"
+    r"|who(?: is|'s| comes| gets help)? next|whose turn(?: is it)?(?: now)?"
+    rf"|where (?:is|are|does|will) {_TANGY} (?:going|go|driving|drive)(?: to)?(?: now| next)?"
 )
-"""Questions about what Tangy does now or next."""
+"""Questions about what Tangy does now or next, and whose turn it is."""
+_WHY_OTHERWISE = re.compile(r"why .*\b(?:you|it|tangy|the robot|nobody|nothing|no one)\b.*")
+"""All other questions that begin so, unless they are about something else."""
 
 
 def read_inquiry(text: str) -> Inquiry | None:
@@ -41,4 +50,121 @@ def read_inquiry(text: str) -> Inquiry | None:
     words = " ".join(text.split()).casefold()
     if words in INQUIRIES:
         return INQUIRIES[words]
-    return "why" if _WHY.fullmatch(words.replace("\u2019", "'").rstrip(" ?.!")) else None
+    words = words.replace("\u2019", "'").rstrip(" ?.!")
+    otherwise = _WHY_OTHERWISE.fullmatch(words) and not _OTHER.search(words)
+    return "why" if _WHY.fullmatch(words) or otherwise else None
+
+
+@dataclass(frozen=True, slots=True)
+class AsksAbout:
+    """A question about people, by id: why Tangy goes to them or not, and when their turn is."""
+
+    people: tuple[str, ...]
+
+
+_SHORT = {
+    "n't": " not",
+    "'ll": " will",
+    "when's": "when is",
+    "why's": "why is",
+    "who's": "who is",
+    "where's": "where is",
+    "how's": "how is",
+    "what's": "what is",
+}
+"""Short forms, and what they stand for."""
+_IRREGULAR = {"won't": "will not", "can't": "can not", "cannot": "can not"}
+_ASKING = re.compile(
+    r"(?:and |but |so )?(?:why|when|how long|how many|how soon|how come|how about|what about"
+    r"|what is with|who is before|who comes before|who is ahead of|what does|what is|where is"
+    r"|is|are|has|have|did|does|will|nobody|no one|tangy (?:is|does) not|you (?:are|do) not"
+    r"|it (?:is|does) not) .+|\S+s'? turn"
+)
+"""The beginnings of questions that may be about a person."""
+_ABOUT_TURN = re.compile(
+    r"^(?:and |but |so )?(?:why|when|how long|how soon|how come|how about|what about|what is with"
+    r"|who )|\b(?:turn|next|first|wait|waits|waiting|waited|asked|asks|asking|queue|line|visit"
+    r"|visits|visited|helped|before|go|goes|going|come|comes"
+    r"|coming|forgotten|forget|up|here|there|away)\b"
+)
+"""What a question of this kind contains."""
+_OTHER = re.compile(
+    r"\b(?:cards?|win|wins|won|winner|marks?|marked|numbers?|scores?|points?|answers?"
+    r"|answered|called|named|battery|camera)\b"
+)
+"""Words of questions about something else."""
+_TO = re.compile(
+    r".* (?:to|with|at|help|helps|helping|helped|visit|visits|visiting|visited|see|sees)"
+    r" (?P<to>\S+(?: \S+)?)"
+    r"|(?:why|when) is it (?:not )?(?P<whose>\S+(?: \S+)?)'s? turn|why not (?P<not>\S+)"
+)
+"""Questions that name a person, even if nobody is called so."""
+_LAST = re.compile(
+    r"(?: (?:now|then|yet|first|next|again|still|please|at all|at last|today|so long))+$"
+)
+_THINGS = frozenset(
+    {
+        *("the", "a", "us", "me", "it", "them", "him", "her", "that", "this", "anybody", "anyone"),
+        *("everybody", "everyone", "people", "somebody", "someone", "now", "so", "you", "all"),
+    }
+)
+_NOT_NAMES = frozenset(("will", "may", "can", "is", "does", "do", "has", "to", "by", "so"))
+"""Words that are names only if no other name is there."""
+LONGEST_NAME = 4  # words
+
+
+def read_question(text: str, find_person: Callable[[str], str]) -> AsksAbout | None:
+    """Parse words as a question about people's turns; None if they are none.
+
+    Any question counts that begins like one and names somebody, so that no wording has to be
+    learnt.
+
+    Args:
+        text: what was typed.
+        find_person: returns the id of a person by name or id, and raises TangyError for others.
+
+    Raises:
+        TangyError: it asks about a person, but nobody is called so; one sentence.
+    """
+    words = " ".join(text.replace("\u2019", "'").split()).strip(" ?.!,")
+    plain = _in_full(words.casefold())
+    if not _ASKING.fullmatch(plain) or not _ABOUT_TURN.search(plain) or _OTHER.search(plain):
+        return None
+    found = list(_named(plain.split(), find_person))
+    people = [person for word, person in found if word not in _NOT_NAMES]
+    if people or found:
+        return AsksAbout(tuple(dict.fromkeys(people or [person for _, person in found])))
+    if (to := _TO.fullmatch(_LAST.sub("", plain))) is not None:
+        wanted = to["to"] or to["whose"] or to["not"]
+        if not {*wanted.split()} & _THINGS:
+            as_typed = re.search(re.escape(wanted), words, re.I)
+            find_person(wanted if as_typed is None else as_typed[0])
+    return None
+
+
+def _in_full(words: str) -> str:
+    for short, full in (_IRREGULAR | _SHORT).items():
+        words = re.sub(rf"{short}(?=\s|$)", full, words)
+    return words
+
+
+def _named(words: list[str], find_person: Callable[[str], str]) -> Iterator[tuple[str, str]]:
+    """Yield the people whom words name, the longest names first at each word."""
+    first = 0
+    while first < len(words):
+        for last in range(min(first + LONGEST_NAME, len(words)), first, -1):
+            name = " ".join(words[first:last]).strip(",;:?")
+            person = _person(name, find_person)
+            if person:
+                yield name, person
+                first = last - 1
+                break
+        first += 1
+
+
+def _person(name: str, find_person: Callable[[str], str]) -> str:
+    """Return the person with a name, perhaps in the genitive; "" for nobody."""
+    for wanted in (name, name.removesuffix("'s"), name.removesuffix("'"), name.removesuffix("s")):
+        with suppress(TangyError):
+            return find_person(wanted)
+    return ""

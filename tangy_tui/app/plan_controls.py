@@ -12,6 +12,7 @@ from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.scene import Scene
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
+    AskFor,
     ChangePace,
     ChoosePatterns,
     ClaimCard,
@@ -201,7 +202,12 @@ class GamePlanControls:
                 return self._no_card(self.with_card(command))
             case ComesIn(person) | GoesAway(person):
                 return self._nobody(person)
+            case AskFor(person):
+                return self._nobody(person) or self._away(person)
         return None
+
+    def _away(self, person: str) -> StaffNote | None:
+        return StaffNote("is away", person) if person in self.away else None
 
     def _nobody(self, person: str) -> StaffNote | None:
         gathering = self._supervision.game.changes.gathering

@@ -23,6 +23,7 @@ from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.learning.policy import Decision
 
 if TYPE_CHECKING:
+    from tangy_hw.robot_client.help_requests import SignState
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_hw.robot_client.staff_card_reports import StaffCardReports
 
@@ -97,6 +98,17 @@ class RobotControls:
     def lets(self) -> str:
         """For whom it waits on its way, as in `RobotState.yields_to`; "" for nobody."""
         return "" if self._robot is None else self._robot.link.state.yields_to
+
+    def sign_of(self, person: str) -> SignState:
+        """Return why a person's sign for help would not count now, "" if it would."""
+        return "" if self._robot is None else self._robot.requests.sign_of(person)
+
+    @property
+    def by_staff(self) -> frozenset[str]:
+        """The people who ask by word, and not by a sign."""
+        if self._robot is None:
+            return frozenset()
+        return frozenset(self._robot.requests.by_word) - self._robot.requests.signs.keys()
 
     def rests(self, decision: Decision) -> bool:
         """Return whether it is too early for the next call."""

@@ -40,6 +40,7 @@ DoneKind = Literal[
 RefusalKind = Literal[
     "here before",
     "away before",
+    "is away",
     "last one",
     "not playing",
     "seen before",

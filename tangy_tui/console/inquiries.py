@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS, read_inquiry
+from tangy_tui.app.inquiry_grammar import (
+    WHO_IS_HERE,
+    WHOSE_CARDS,
+    read_inquiry,
+    read_question,
+)
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.monitoring.earlier import EarlierPart
@@ -27,6 +35,7 @@ from tangy_tui.text.staff_lines import (
 )
 from tangy_tui.text.staff_view import person_words, time_words
 from tangy_tui.text.times import local_now
+from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, why_now_lines
 
 HELP = "You can type at any time:"
 
@@ -39,6 +48,7 @@ class Inquiries:
         controller: GameController,
         name: Name,
         demonstrations: Demonstrations | None,
+        find_person: Callable[[str], str],
         earlier: EarlierPart | None = None,
     ) -> None:
         """Answer about the games of a controller.
@@ -47,21 +57,30 @@ class Inquiries:
             controller: runs the games.
             name: returns a person's name for an id.
             demonstrations: explain decisions.
+            find_person: returns the id of a person by name or id.
             earlier: what happened before the first game was interrupted.
         """
         self._controller, self._earlier = controller, earlier
         self._game = controller.supervision
         self._name, self._demonstrations = name, demonstrations
+        self._find_person = find_person
 
-    def lines(self, word: str) -> list[str] | None:
+    def lines(self, text: str) -> list[str] | None:
         """Return the answer to a typed question; None if it is none."""
+        try:
+            about = read_question(text, self._find_person)
+        except TangyError as error:
+            return [str(error)]
+        if about is not None:
+            return about_lines(self._controller, about, self._name)
+        word = text.casefold()
         match read_inquiry(word):
             case "help" | "phrases":
                 return self._help()
             case "where":
                 return [self._where()]
             case "why":
-                return why_lines(self._game, self._demonstrations)
+                return self._why()
             case "what to do":
                 return advice_lines(self._game) or [NOTHING_WRONG]
             case "faults":
@@ -87,6 +106,14 @@ class Inquiries:
     def _before(self) -> EarlierPart | None:
         """What happened before the present game was interrupted."""
         return self._earlier if self._game.games <= 1 else None
+
+    def _why(self) -> list[str]:
+        """Tell what Tangy does now and why in plain sentences, and then how it decides."""
+        told = why_now_lines(self._controller, self._name)
+        if self._game.over:
+            return told
+        details = why_lines(self._game, self._demonstrations)
+        return [*told, f"{IN_DETAIL}:", *(f"  {line}" for line in details)]
 
     def waits_for(self, key: str = "Y") -> str:
         """Tell what Tangy waits for; "" if it does not wait; `key` says yes to a proposal."""

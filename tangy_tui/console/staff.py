@@ -108,7 +108,7 @@ class StaffLines:
         self._sure = ConfirmingStaff(controller, name, self._yes, telling.write)
         self._freezes = FreezeLines(controller, self._sure, telling.write, watch)
         self._waits = ScriptWaits(controller, self._tell_progress)
-        self._inquiries = Inquiries(controller, name, demonstrations, earlier)
+        self._inquiries = Inquiries(controller, name, demonstrations, find_person, earlier)
         self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, telling.write)
         telling.verify = lambda said: self._questions.verify(said, self._typed)
         self._ahead = ReadAhead(read) if ahead is None else ahead
@@ -116,7 +116,8 @@ class StaffLines:
         self.played = 0
         self._begun = threading.Event()
         self._tasks: queue.Queue[Task | None] = queue.Queue()
-        self._command = command_reader(self._game.world.activity, find_person)
+        activity = self._game.world.activity
+        self._command = command_reader(activity, find_person, lambda: controller.asks_next)
 
     def run(self, games: int) -> bool:
         """Play, up to a game that somebody joins; return whether none stopped early."""
@@ -348,7 +349,7 @@ class StaffLines:
             self._sure.drop()
             if controller.answers.verifying:
                 controller.answers.reply(Reply(yes=False))
-        told = self._inquiries.lines(text.casefold()) if command is None else None
+        told = self._inquiries.lines(text) if command is None else None
         if command is not None and read_answer(text) is None:
             self._sure.give_way(command)
         if self._sure.open:

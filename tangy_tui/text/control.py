@@ -175,6 +175,11 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"{name(about)} is here already."
         case "away before":
             return f"{name(about)} has left already."
+        case "is away":
+            who = name(about)
+            return (
+                f"Tangy does not go to {who}, who is not here. If {who} is back, type: here {who}."
+            )
         case "last one":
             return f"{name(about)} is the only one left: end the game instead."
         case "not playing":

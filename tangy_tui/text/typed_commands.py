@@ -29,8 +29,8 @@ def example_words(rules: GameRules) -> str:
     claim = f", {rules.claim} 17" if rules.claim else ""
     patterns = f", play for {rules.patterns[-1].name}" if rules.patterns else ""
     return (
-        f"For example: pace 20{claim}{patterns}, take back, left Rosa, here Rosa. To see what "
-        "Tangy does and why: type why, or press {why} without this line."
+        f"For example: pace 20{claim}{patterns}, take back, left Rosa, help Rosa. To see what "
+        "Tangy does and why: type why, or press {why} without this line. Or ask: why not Rosa."
     )
 
 

@@ -49,7 +49,7 @@ class Asked:
             flush=lambda: None,
             clock=lambda: self.now,
         )
-        inquiries = Inquiries(control, workspace.name, None)
+        inquiries = Inquiries(control, workspace.name, None, str)
         self.questions = AnsweredQuestions(control, yes, inquiries, self.write)
 
     def write(self, line: str) -> None:

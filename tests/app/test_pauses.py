@@ -136,5 +136,5 @@ def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> 
     robot.link.time += 200.5
     view = view_of(robot.control)
     assert view is not None and view.paused == 200
-    (line,) = Inquiries(robot.control, workspace.name, None).lines("where") or []
+    (line,) = Inquiries(robot.control, workspace.name, None, str).lines("where") or []
     assert time_words(view.seconds, 0, 200) in line

@@ -237,21 +237,21 @@ def test_staff_read_what_the_group_hears_about_a_claim(
 
 def test_help_has_the_word_that_people_call_out(planned: Planned) -> None:
     planned.begin(GamePlan())
-    lines = Inquiries(planned.control, str, None).lines("help") or []
+    lines = Inquiries(planned.control, str, None, str).lines("help") or []
     claim = planned.workspace.activity.rules.claim
     assert [line for line in lines if line.startswith(f"  {claim} 17: ")]
 
 
 def test_staff_read_who_is_here(planned: Planned) -> None:
     planned.begin(GamePlan(absent=("user2",)))
-    lines = Inquiries(planned.control, {"user2": "Emil"}.get, None).lines("who is here") or []  # type: ignore[arg-type]
+    lines = Inquiries(planned.control, {"user2": "Emil"}.get, None, str).lines("who is here") or []  # type: ignore[arg-type]
     assert len(lines) == 4 and lines[1].startswith("2. Emil: not here")
 
 
 def test_staff_read_whose_card_is_whose(planned: Planned) -> None:
     planned.begin(GamePlan())
     name = {"user2": "Emil"}.get
-    lines = Inquiries(planned.control, lambda who: name(who, who), None).lines("cards")
+    lines = Inquiries(planned.control, lambda who: name(who, who), None, str).lines("cards")
     assert lines == ["Cards: user1 1, Emil 2, user3 3, user4 4."]
 
 

@@ -100,7 +100,7 @@ def test_the_lines_tell_what_was_before_a_crash(interrupted: Workspace, learnt: 
     activity, names = interrupted.activity, interrupted.names
     part = read_earlier(interrupted.store, past, activity, names)
     control = scripted_controller(interrupted.supervision(learnt, 5))
-    inquiries = Inquiries(control, interrupted.name, None, part)
+    inquiries = Inquiries(control, interrupted.name, None, str, part)
     messages, faults = inquiries.lines("messages"), inquiries.lines("faults")
     assert messages is not None and faults is not None
     assert messages[0].startswith("Before the interruption (")

@@ -138,9 +138,9 @@ async def test_a_refused_command_is_typed_over_or_replaced_by_a_similar_one(
         await pilot.press(*"qwertz", "enter")
         await pilot.press(*"zz")
         assert line.value == "zz"  # the next letter replaced the line
-        line.value = f"help {name}"
+        line.value = f"help with {name}"
         await pilot.press("enter", "end", "x")
-        assert line.value == f"help {name}x"  # it can be corrected, too
+        assert line.value == f"help with {name}x"  # it can be corrected, too
         await pilot.press("backspace", "enter", "tab", "enter")
         assert answers == [AskFor("user2")]
 

@@ -391,10 +391,13 @@ def test_a_typed_stop_at_a_question_executes_nothing(
 
 
 def test_why_and_where_work_at_a_question(workspace: Workspace) -> None:
-    why, *others = asked(workspace, "why", "Where")
-    assert why == "Situation: the game has not begun."
-    assert "Nobody has shown Tangy what to do here. It asks instead of acting." in others
-    assert "How sure Tangy is: call number 100%." in others
+    unknown = "Nobody has shown Tangy what to do here yet: the game has not begun."
+    why, details, *others = asked(workspace, "why", "Where")
+    assert why == f"Tangy waits for your answer. {unknown}"
+    assert details == "How Tangy decides:"
+    assert "  Situation: the game has not begun." in others
+    assert "  Nobody has shown Tangy what to do here. It asks instead of acting." in others
+    assert "  How sure Tangy is: call number 100%." in others
     assert (
         others[-1]
         == "Now: the game has not begun. Tangy is at the front. Nobody asks for help. (asking)"
@@ -402,9 +405,12 @@ def test_why_and_where_work_at_a_question(workspace: Workspace) -> None:
 
 
 def test_why_without_demonstrations_prints_the_votes(workspace: Workspace) -> None:
+    unknown = "Nobody has shown Tangy what to do here yet: the game has not begun."
     assert asked(workspace, "why", knows=False) == [
-        "Nobody has shown Tangy what to do here yet: the game has not begun.",
-        "How sure Tangy is: call number 100%.",
+        f"Tangy waits for your answer. {unknown}",
+        "How Tangy decides:",
+        f"  {unknown}",
+        "  How sure Tangy is: call number 100%.",
     ]
 
 
@@ -414,7 +420,7 @@ def test_help_at_a_question_explains_every_word(workspace: Workspace) -> None:
     assert said[0] == answer
     for behaviour in workspace.activity.behaviours.values():
         assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
-    assert "  where, why: says what Tangy sees; what it does now and next, and why" in said
+    assert "  where, why: says what Tangy sees; what it does now, why, and who waits" in said
     assert asked(workspace, "qwertz")[-1] == answer
     assert asked(workspace, "yes") == ["There is no question open: give a command."]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from contextlib import suppress
+from typing import Literal
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.commands import Commands
@@ -16,6 +17,10 @@ SIGN_SECONDS = 8.0  # for a person who was helped to take the sign down
 
 WITHDRAWN_SECONDS = 3.0
 """Time without a sign after which a request counts as withdrawn: an arm may have covered it."""
+
+SignState = Literal["", "no sensor", "silent", "set aside"]
+"""Why a person's sign does not count; `set aside`: it counts after it has come down and up again.
+"""
 
 
 class HelpRequestTracker:
@@ -55,6 +60,14 @@ class HelpRequestTracker:
             self._unseen.clear()
         aside = self._aside | self._unseen
         return {p: since for p, since in signs.items() if p not in aside} | self._by_word
+
+    def sign_of(self, person: str) -> SignState:
+        """Return why a person's sign would not count now, "" if it would."""
+        if self._device is None:
+            return "no sensor"
+        if not self._sees:
+            return "silent"
+        return "set aside" if person in self.signs and person not in self.all else ""
 
     @property
     def by_word(self) -> tuple[str, ...]:

@@ -13,13 +13,14 @@ from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.app.inquiry_grammar import AsksAbout
 from tangy_tui.app.teaching_grammar import Perform
 from tangy_tui.text import typed_commands as text
 from tangy_tui.text.telling import TELL, TELL_HELP, TELL_KEYS, telling_words
 from tangy_tui.ui.dialogs.line import LineDialog
 
 
-class CommandDialog(LineDialog[GameCommand | Perform]):
+class CommandDialog(LineDialog[GameCommand | Perform | AsksAbout]):
     """Parses a command; a line that is none stays, with an explanation and similar commands.
 
     It is selected then, so that the next letter replaces it; Tab replaces it by a similar command.
@@ -35,7 +36,7 @@ class CommandDialog(LineDialog[GameCommand | Perform]):
 
     def __init__(
         self,
-        read: Callable[[str], GameCommand | Perform | None],
+        read: Callable[[str], GameCommand | Perform | AsksAbout | None],
         begun: str,
         title: str,
         words: str,
@@ -54,7 +55,7 @@ class CommandDialog(LineDialog[GameCommand | Perform]):
         self._read, self._similar = read, similar
         self._near: list[str] = []  # the similar commands, in the order of the next Tabs
 
-    def taken(self, line: str) -> GameCommand | Perform:
+    def taken(self, line: str) -> GameCommand | Perform | AsksAbout:
         """Parse a command; raises TangyError if the line is none."""
         self._near = []
         command = self._read(line)

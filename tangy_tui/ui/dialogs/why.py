@@ -27,6 +27,7 @@ from tangy_tui.text.decisions import (
     why_words,
 )
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.whose_turn import IN_DETAIL
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.page import PageDialog
 from tangy_tui.ui.messages import OpenStep
@@ -62,7 +63,8 @@ class WhyDialog(PageDialog):
         Binding("escape,q,w", "close", "Close", key_display="esc"),
     ]
     HELP = (
-        "What Tangy does next and why, and what its last step rests on: how sure Tangy is of each "
+        "First what Tangy does now and why, and who waits. Then the details: what it does next, "
+        "and what its last step rests on: how sure Tangy is of each "
         "behaviour, which demonstrated steps say so or say otherwise, and for a way of speaking "
         "the number that was drawn from what is believed of each. Up and down choose a step and "
         "scroll; Enter opens it where it was demonstrated. The newest steps come first; Enter on "
@@ -97,6 +99,8 @@ class WhyDialog(PageDialog):
         self._remarks = tuple(remarks)
         self.coming = coming
         """The next step of the game, explained before the last one."""
+        self.plain: Sequence[str] = ()
+        """What Tangy does now and why, in plain sentences, before all details."""
         self._whole = set[int]()  # the groups of steps that are shown in full
         library = read_library(workspace.store, workspace.activity.name)
         self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
@@ -120,8 +124,11 @@ class WhyDialog(PageDialog):
     def write(self, width: int) -> list[PageLine]:
         """Format the page for a width in cells."""
         lines: list[PageLine] = []
+        for sentence in self.plain:
+            lines += paragraph(clean(sentence), width, "strong")
+        lines += heading(IN_DETAIL) if self.plain else []
         if (coming := self.coming) is not None:
-            lines += paragraph(clean(coming.words), width, "strong")
+            lines += paragraph(clean(coming.words), width, "text" if self.plain else "strong")
             for sentence in reasons_words(self._workspace.activity, coming.why):
                 lines += paragraph(clean(sentence), width)
             lines += heading(clean(coming.before))

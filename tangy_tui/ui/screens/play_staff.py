@@ -32,6 +32,7 @@ from tangy_tui.app.game_commands import (
     Tell,
 )
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
 from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.similar_commands import nearest_commands
@@ -64,7 +65,8 @@ from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.joining import ask_where, ask_who_joins
 from tangy_tui.ui.screens.play_panels import PlayPanels
-from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer, wanted
+from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer
+from tangy_tui.ui.screens.question_text import wanted
 
 PACE_SECONDS = 1.0
 """The delay after the last change of pace before the new pace is shown."""
@@ -222,7 +224,7 @@ class PlayStaff(PlayPanels):
         if steering_of(text) is None:  # an answer of the person the game waits for
             self._do(Tell(None, text, sure, "speech"))
             return
-        command = read_command(text, lambda name: self._workspace.find_person(name).id)
+        command = read_command(text, self.id_of)
         if isinstance(command, GoOn) and not self.control.going:
             if not self._refused():
                 self.action_pause()
@@ -246,9 +248,9 @@ class PlayStaff(PlayPanels):
         """Let staff type a command; `asked` is the question, and its explanation."""
         activity = self._workspace.activity
         names = [*self._workspace.names.values()]
-        read = command_reader(activity, lambda who: self._workspace.find_person(who).id)
+        read = command_reader(activity, self.id_of)
         dialog = CommandDialog(
-            lambda typed: read(typed) or read_screen(typed),
+            lambda typed: read(typed) or read_question(typed, self.id_of) or read_screen(typed),
             begun,
             *(asked or (TITLE, self._told(example_words(activity.rules)))),
             lambda typed: nearest_commands(typed, names, activity.rules),
@@ -259,6 +261,8 @@ class PlayStaff(PlayPanels):
             return
         if isinstance(command, StopRobot):
             await self.run_action("app.stop")
+        elif isinstance(command, AsksAbout):
+            self.answer_about(command)
         elif command is not None:
             self._do_typed(command)
 

@@ -17,15 +17,9 @@ from textual.widgets import Static
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
 from tangy_tui.app.command_grammar import read_command
-from tangy_tui.app.game_commands import (
-    TAKEN_OVER,
-    Accept,
-    EndGame,
-    GameCommand,
-    GiveBack,
-    StopRobot,
-)
+from tangy_tui.app.game_commands import Accept, EndGame, GameCommand, GiveBack, StopRobot
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.teaching_grammar import Perform, read_screen
 from tangy_tui.app.workspace import Workspace
@@ -52,7 +46,7 @@ from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.hearing import hearing_of
 from tangy_tui.ui.keys import foot, keymap_of
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.screens.question_text import question_words, seen_words
+from tangy_tui.ui.screens.question_text import question_words, seen_words, wanted
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
 from tangy_tui.ui.widgets.command_bar import AnswerBar, CommandBar
 from tangy_tui.ui.widgets.log_view import Kind, LogView
@@ -73,11 +67,6 @@ class NoAnswer(Enum):
     WITHDRAWN = "withdrawn"
 
 
-def wanted(question: Unsure) -> bool:
-    """Return whether staff requested the question, so that Tangy could also continue by itself."""
-    return question.fault == TAKEN_OVER
-
-
 class AskingPanel(Vertical):
     """Tangy's question with its reason, and the line for answers; `answer()` waits for one.
 
@@ -94,7 +83,11 @@ class AskingPanel(Vertical):
     """
 
     class WhyWanted(Message):
-        """The teacher asked why: show the explanation."""
+        """The teacher asked why, or when Tangy goes to people: explain it."""
+
+        def __init__(self, about: AsksAbout | None = None) -> None:
+            super().__init__()
+            self.about = about
 
     class Commanded(Message):
         """The teacher typed a command instead of an answer."""
@@ -267,12 +260,11 @@ class AskingPanel(Vertical):
         """Handle a typed answer or command."""
         event.stop()
         self._by_voice = False
-        word = read_screen(event.text)
-        if word is not None:
-            self.query_one(CommandBar).ready()
-            self._show(word)
-            return
         try:
+            if word := read_question(event.text, self._find_person) or read_screen(event.text):
+                self.query_one(CommandBar).ready()
+                self._show(word)
+                return
             rules = self._workspace.activity.rules
             command = read_command(event.text, self._find_person, self._phrasebook.game, rules)
         except TangyError as error:
@@ -287,10 +279,10 @@ class AskingPanel(Vertical):
             self.query_one(CommandBar).ready()
             self._carry_out(command)
 
-    def _show(self, word: Perform) -> None:
-        """Show the explanation, or run a key's action."""
-        if word.action == "why":
-            self.post_message(self.WhyWanted())
+    def _show(self, word: Perform | AsksAbout) -> None:
+        """Show an explanation, or run a key's action."""
+        if isinstance(word, AsksAbout) or word.action == "why":
+            self.post_message(self.WhyWanted(word if isinstance(word, AsksAbout) else None))
         else:
             self.app.run_worker(perform(self.screen, word.action, word.on))
 
