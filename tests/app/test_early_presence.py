@@ -135,6 +135,36 @@ def test_a_request_by_word_of_staff_is_shown_during_the_step(robot: Robot) -> No
     assert robot.control.plan.scene.requests == ("user3",)
 
 
+def test_a_sign_is_shown_during_the_step_in_which_it_is_raised(robot: Robot) -> None:
+    shown = list[tuple[tuple[str, ...], list[str]]]()
+
+    def meanwhile(do: str, time: float) -> None:
+        robot.link.meanwhile = lambda do, time: None
+        robot.link.sign(2, 3)
+        asks = [one.id for one in robot.control.view().people if one.state == "asks"]
+        shown.append((robot.control.plan.scene.requests, asks))
+        assert robot.world.tracker.queue == [] and robot.world.queue == ()
+
+    robot.link.meanwhile = meanwhile
+    robot.next(1)
+    assert shown == [(("user2", "user3"), ["user2", "user3"])]
+    assert robot.world.queue == ("user2", "user3")
+
+
+def test_a_sign_that_comes_down_late_is_not_shown_as_a_new_request(robot: Robot) -> None:
+    shown = list[tuple[str, ...]]()
+    robot.next(1)
+    robot.link.sign(2)
+
+    def meanwhile(do: str, time: float) -> None:
+        shown.append(robot.world.asking)
+
+    robot.link.meanwhile = meanwhile
+    assert not robot.world.requests.answered("user2")
+    assert shown and not any(shown)
+    assert robot.world.asking == ("user2",)
+
+
 def test_a_word_of_staff_that_an_interruption_overtook_holds_in_the_resumed_game(
     robot: Robot,
 ) -> None:

@@ -33,6 +33,7 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
+from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.hw.links import LaidCard
@@ -95,6 +96,24 @@ async def test_a_small_window_shows_the_goal_of_the_robot(
             await until_shown(pilot, lambda: "drives to User 1" in pilot.lines()[0])
             told = pilot.lines()[0]
             assert "TANGY live" in told and "robot OK" in told
+        finally:
+            link.free = True
+
+
+@pytest.mark.slow
+async def test_a_sign_is_drawn_before_the_step_is_over(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    async with run(app=program) as pilot:
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
+        link.free = False
+        try:
+            await until_shown(pilot, lambda: live(pilot).working > 0)
+            link.sign(3)
+            room = live(pilot).query_one(RoomView)
+            await until_shown(pilot, lambda: room.scene.requests == ("user3",))
+            await until_shown(pilot, lambda: "1. User 3 asks" in screen_text(pilot.app))
+            assert world.tracker.queue == []
         finally:
             link.free = True
 

@@ -43,6 +43,7 @@ class HelpRequestTracker:
         self._by_word: dict[str, float] = {}
         self._without_sign: dict[str, float] = {}
         self._aside: set[str] = set()
+        self._settling = ""  # whose request was just settled: the sign comes down a little later
         self._unseen: set[str] = set()  # people whose signs a sensor showed before it fell silent
 
     @property
@@ -68,6 +69,16 @@ class HelpRequestTracker:
         if not self._sees:
             return "silent"
         return "set aside" if person in self.signs and person not in self.all else ""
+
+    @property
+    def raised(self) -> tuple[str, ...]:
+        """People whose signs are up and count, in the order in which they raised them.
+
+        It changes nothing, so that a screen may ask while the game runs.
+        """
+        signs = sorted(self.signs.items(), key=lambda item: item[1])
+        aside = self._aside | self._unseen | {self._settling}
+        return tuple(person for person, _ in signs if person not in aside)
 
     @property
     def by_word(self) -> tuple[str, ...]:
@@ -102,11 +113,14 @@ class HelpRequestTracker:
         until the sensor works again.
         """
         self.over(person)
-        began = self._link.time
-        self._commands.do("answered", seat=self._people.index(person) + 1)
-        self._commands.settle()
-        while person in self.all and self._link.time - began < SIGN_SECONDS:
-            self._look()
+        began, self._settling = self._link.time, person
+        try:
+            self._commands.do("answered", seat=self._people.index(person) + 1)
+            self._commands.settle()
+            while person in self.all and self._link.time - began < SIGN_SECONDS:
+                self._look()
+        finally:
+            self._settling = ""
         if person in self.all and not self._sees:
             self._unseen.add(person)
         return person not in self.all

@@ -147,6 +147,15 @@ class LivePlan(PlannedGame):
         return *queue, *new
 
     @property
+    def asking(self) -> tuple[str, ...]:
+        """The queue, and behind it people whose signs the game takes in after its present step."""
+        queue = self.queue
+        if self.over:
+            return ()
+        known = {*queue, *self.away}
+        return *queue, *(one for one in self.requests.raised if one not in known)
+
+    @property
     def arrived(self) -> bool:
         """Whether it stands at its place in the game, rather than being on its way or moved."""
         state = self.link.state

@@ -354,8 +354,8 @@ class LiveWorld(LivePlan):
     # ------------------------------------------------------------------------ scene
 
     def scene(self) -> Scene:
-        """Return the scene for a screen to draw."""
-        tracker, asking, view = self.tracker, self.queue, self.cards.view
+        """Return the scene for a screen to draw, with the signs that are up now."""
+        tracker, asking, view = self.tracker, self.asking, self.cards.view
         doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
         seen = view if view is not None and view.person == tracker.place else None
         place = self.link.state.going or tracker.place

