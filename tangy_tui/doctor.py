@@ -163,7 +163,10 @@ def examine_robot(
         return f"{robot.title}'s {known.label if known is not None else device}"
 
     tried = asyncio.run(try_robot(robot, activity, cameras, seconds, pairing=pairing))
-    return [Finding(label(one.device), one.ok, one.text, not one.absent) for one in tried]
+    return [
+        Finding(label(one.device), one.ok, one.text, broken=not one.ok and not one.absent)
+        for one in tried
+    ]
 
 
 def examine_contacts(robot: Robot, seconds: float = TEST_SECONDS) -> list[Finding]:

@@ -74,3 +74,15 @@ def test_rosbridge_refuses_a_device_that_it_has_no_driver_for(
     wiring = Wiring(load_robot("tangy"), load_activity("bingo"), MachineClock())
     with pytest.raises(DeviceError, match="no device named 'lamp'"):
         open_device(wiring, "lamp", {"kind": "rosbridge", "at": "ws://127.0.0.1:9"})
+
+
+def test_a_driver_that_raises_when_it_is_opened_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def opens(wiring: Wiring, settings: DriverSettings) -> Device:
+        raise ValueError("no such port.")
+
+    monkeypatch.setattr(registry, "DRIVERS", {"mine": DriverKind(("laser",), opens)})
+    wiring = Wiring(load_robot("tangy"), load_activity("bingo"), MachineClock())
+    with pytest.raises(
+        DeviceError, match=r"drivers\.laser \(mine\): .*ValueError: no such port\.$"
+    ):
+        open_device(wiring, "laser", {"kind": "mine"})

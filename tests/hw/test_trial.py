@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tangy_hw.device_protocols import MachineClock, Odometry, Pose, Scan, Stamped, Twist
 from tangy_hw.drivers import registry
 from tangy_hw.drivers.registry import DriverKind
 from tangy_hw.robot_process.self_test import SelfTestResult, try_robot
@@ -75,11 +77,12 @@ class Cell:
     [
         (Reading("battery", 0.0, OK, {"charge": 0.5, "charging": True}), None, ""),
         (Reading("battery", 0.0, OK, {"charging": True}), None, "charge"),
+        (Reading("battery", 0.0, OK, {"charge": 80, "charging": True}), None, "from 0 to 1"),
         (Reading("battery", NEVER), None, "nothing"),
         (KeyError("volts"), None, "KeyError: 'volts'"),
         (Reading("battery"), OSError("no such file"), "OSError: no such file"),
     ],
-    ids=["works", "lacks a fact", "no data", "reading fails", "start fails"],
+    ids=["works", "lacks a fact", "percent", "no data", "reading fails", "start fails"],
 )
 async def test_a_driver_of_another_package_that_fails_is_told(
     reading: Reading | Exception,
@@ -111,7 +114,11 @@ async def test_each_device_gets_one_sentence(tmp_path: Path) -> None:
     )
     with turning(server):
         found = await tried(robot)
-    assert found["laser"] == SelfTestResult("laser", True, f"scip at {server.url} works.")
+    assert found["laser"].ok and found["laser"].text.startswith(f"scip at {server.url} works: ")
+    assert (
+        "beams over" in found["laser"].text
+        and "the nearest thing 1.00 m away" in found["laser"].text
+    )
     assert found["base"] == SelfTestResult("base", False, "nobody answers at ws://127.0.0.1:9.")
     assert "did you mean 'rosbridge'?" in found["arms"].text
     assert found["stop_button"].absent
@@ -149,3 +156,93 @@ async def test_a_robot_without_drivers_lacks_every_device() -> None:
     assert {"base", "laser", "arms", "voice", "stop_button"} <= set(found)
     assert all(one.absent and not one.ok for one in found.values())
     assert "name its source in tangy.toml" in found["camera"].text
+
+
+class Wheels(Cell):
+    """A base or a scanner of another package."""
+
+    def __init__(self, name: str, value: object) -> None:
+        super().__init__(name, Reading(name), None)
+        self.odometry = self.scan = value
+
+    async def drive(self, twist: Twist) -> None: ...
+
+    async def stop(self) -> None: ...
+
+
+def now() -> float:
+    return MachineClock().now()
+
+
+def scan(ranges: Sequence[float], step: float = 0.01, stamp: float | None = None) -> Stamped[Scan]:
+    stamp = now() if stamp is None else stamp
+    return Stamped(Scan(-1.0, step, np.array(ranges, float), 12.0), stamp, 1)
+
+
+def moved(x: float, forward: float = 0.0) -> Stamped[Odometry]:
+    return Stamped(Odometry(Pose(x, 0.0, 0.0), Twist(forward)), now(), 1)
+
+
+ROUND = [2.0] * 100
+
+
+@pytest.mark.parametrize(
+    ("device", "value", "says"),
+    [
+        ("laser", scan([1.0, *ROUND]), "works: 101 beams over 57°, the nearest thing 1.00 m away"),
+        ("laser", scan([math.inf] * 100), "none of them meets anything"),
+        ("laser", scan([math.nan, *ROUND]), "1 of 101 ranges are NaN"),
+        ("laser", scan([-1.0, *ROUND]), "negative"),
+        ("laser", scan([1.0, 2.0]), "too few"),
+        ("laser", scan([1500.0] * 100), "in m"),
+        ("laser", scan(ROUND, step=0.5), "in rad"),
+        ("laser", scan(ROUND, stamp=now() + 1e9), "wiring.clock.now()"),
+        ("laser", [1, 2, 3], "no Stamped(Scan"),
+        ("base", moved(1.0), "works: odometry 1.00, 0.00 m, 0°"),
+        ("base", moved(math.nan), "NaN"),
+        ("base", moved(0.0, 300.0), "in m/s"),
+        ("base", (0, 0, 0), "no Stamped(Odometry"),
+    ],
+)
+async def test_data_that_make_no_sense_are_told_and_others_shown(
+    device: str, value: object, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mine = DriverKind((device,), lambda *_: Wheels(device, value))
+    monkeypatch.setattr(registry, "DRIVERS", {"mine": mine})
+    found = (await tried(driven(tmp_path, **{device: 'kind = "mine"'}), 0.05))[device]
+    assert says in found.text
+    assert found.ok is ("works" in found.text)
+
+
+@pytest.mark.parametrize("how", ["opens", "start"])
+async def test_a_driver_that_raises_or_hangs_does_not_hide_the_others(
+    how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tangy_hw.robot_process.self_test.START_SECONDS", 0.02)
+
+    class Hangs(Wheels):
+        async def start(self) -> None:
+            await asyncio.Event().wait()
+
+    def opens(*_: object) -> Wheels:
+        if how == "opens":
+            raise ValueError("no such port")
+        return Hangs("base", moved(0.0))
+
+    good = DriverKind(("laser",), lambda *_: Wheels("laser", scan(ROUND)))
+    kinds = {"mine": DriverKind(("base",), opens), "good": good}
+    monkeypatch.setattr(registry, "DRIVERS", kinds)
+    found = await tried(driven(tmp_path, base='kind = "mine"', laser='kind = "good"'), 0.05)
+    says = "ValueError: no such port." if how == "opens" else "has not started within"
+    assert says in found["base"].text and not found["base"].ok
+    assert found["laser"].ok
+
+
+async def test_a_robot_with_a_laser_scanner_needs_a_base(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = DriverKind(("laser",), lambda *_: Wheels("laser", scan(ROUND)))
+    monkeypatch.setattr(registry, "DRIVERS", {**registry.DRIVERS, "good": good})
+    found = await tried(driven(tmp_path, laser='kind = "good"'), 0.05)
+    assert not found["base"].absent and "cannot drive without one" in found["base"].text
+    assert found["stop_button"].absent

@@ -14,6 +14,8 @@ import pytest
 from tangy_hw.audio.arecord import list_microphones
 from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.chest_pairing import keep_pairing
+from tangy_hw.robot_process import self_test
+from tangy_hw.robot_process.self_test import SelfTestResult
 from tangy_profiles import log_file
 from tangy_profiles.activity import load_activity
 from tangy_profiles.process_log import LEVEL
@@ -168,7 +170,8 @@ def test_the_devices_of_a_robot_are_tested_and_undriven_ones_missing(tmp_path: P
     }
     laser = found["Tangy's laser scanner"]
     assert (laser.state, "/dev/no-such-port cannot be opened" in laser.text) == ("broken", True)
-    assert found["Tangy's wheels"].state == "missing"
+    assert found["Tangy's wheels"].state == "broken"  # named drivers, but no base
+    assert found["Tangy's arms"].state == "missing"
 
 
 @pytest.mark.slow
@@ -208,3 +211,18 @@ def test_a_requested_broken_part_sets_the_exit_status(
         done = tangy("doctor", "--robot", robot, *data)
     assert done.returncode == 1
     assert "broken   Tangy's laser scanner" in done.stdout
+
+
+def test_a_robot_that_works_does_not_set_the_exit_status(
+    tangy: Callable[..., CompletedProcess[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def works(*_: object, **__: object) -> list[SelfTestResult]:
+        return [
+            SelfTestResult("laser", True, "mine works."),
+            SelfTestResult("arms", False, "", True),
+        ]
+
+    monkeypatch.setattr(self_test, "try_robot", works)
+    done = tangy("doctor", "--robot", "tangy", "--data", tmp_path / "data")
+    assert "ok       Tangy's laser scanner: mine works." in done.stdout
+    assert done.returncode == 0

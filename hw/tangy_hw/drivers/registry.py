@@ -19,7 +19,7 @@ from tangy_hw.drivers.simulated_clock import SteppedClock
 from tangy_hw.robot_setup import Setting
 from tangy_hw.watchdogs import DRIVES_BY
 from tangy_profiles.activity import Activity
-from tangy_profiles.errors import ProfileError
+from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.extensions import Extension, extensions
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot
@@ -341,7 +341,13 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
             plain(f"drivers.{device}: {kind!r} drives no {device}; {nearest(kind, known)}")
         )
     settings = DriverSettings(device, kind, {k: v for k, v in values.items() if k != "kind"})
-    opened = drivers[kind].opens(wiring, settings)
+    try:
+        opened = drivers[kind].opens(wiring, settings)
+    except TangyError:
+        raise
+    except Exception as error:  # of another package
+        why = f"its driver fails: {type(error).__name__}: {error}".rstrip(".")
+        raise settings.wrong(f"{why}.") from error
     settings.close()
     lacks = [name for name in members_of(device) if not _has(opened, name)]
     if lacks:

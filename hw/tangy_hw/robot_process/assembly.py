@@ -173,7 +173,8 @@ def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
             raise DeviceError(
                 f"{wiring.robot.title} has no driver for {needed}: it must drive and see where."
             )
-    own = [devices[name] for name in ("navigator", "battery") if name in devices]
+    served = ("base", "laser", "stop_button", "arms", "voice", "screen")
+    own = [device for name, device in devices.items() if name not in served]
     return Body(
         base=devices["base"],
         laser=devices["laser"],

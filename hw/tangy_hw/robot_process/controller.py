@@ -25,6 +25,7 @@ from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.control_loop import ControlLoop
 from tangy_hw.robot_process.device_diagnostics import device_diagnostics
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
+from tangy_hw.robot_process.driver_checks import CheckedData, start_device
 from tangy_hw.robot_process.hand_drive import HandDrive
 from tangy_hw.robot_process.pause_watch import PauseWatch
 from tangy_hw.robot_process.performer import Performer
@@ -98,7 +99,7 @@ class LiveRobot:
         self._wait_explanations = WaitExplanations(
             wait_explanations or {}, lambda text: self.perform(text=text)
         )
-        self._moved = OdometryHistory()
+        self._moved, self._data = OdometryHistory(), CheckedData(body)
         self._wanted: Pose | None = None
         self._was = ""  # state at the end of the last drive
         self._evidence = DriveMonitor(navigator, clock.now)
@@ -109,6 +110,7 @@ class LiveRobot:
             self._evidence,
             lambda: clock.now() - self._ticked,
             lambda: self._ticks.rate(clock.now()),
+            report=self._data.report,
             failed=lambda: self.failed,
             frozen=lambda: self.watch.frozen,
             pauses=lambda: self.pauses,
@@ -126,7 +128,7 @@ class LiveRobot:
         """Switch its devices on; `starts` is called with the name of each before."""
         for device in self.body.all:
             starts(device.name)
-            await device.start()
+            await start_device(device)
         if self.requests is not None:
             starts(REQUESTS)
             await self.requests.start()
@@ -335,13 +337,12 @@ class LiveRobot:
 
     def tick(self) -> bool:
         """Sense, decide, and command the base; return whether it drives, or is about to."""
-        base, laser = self.body.base, self.body.laser
         now = self._clock.now()
         passed, self._ticked = now - self._ticked, now
         self._ticks.count(now)
         if self.watch.tick():
             self._was_frozen()
-        odometry, scan = base.odometry, laser.scan
+        odometry, scan = self._data.odometry, self._data.scan
         command, seen = STILL, None if scan is None else scan.value
         if odometry is not None:
             self._moved.note(odometry)

@@ -10,6 +10,7 @@ from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import RequestSource
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
+from tangy_hw.robot_process.driver_checks import safe_reading
 from tangy_hw.robot_process.pause_watch import PauseWatch
 from tangy_hw.watchdogs import Report
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
@@ -27,6 +28,7 @@ def device_diagnostics(
     ticked: Callable[[], float],
     rate: Callable[[], float | None] = lambda: None,
     *,
+    report: Callable[[Device], Reading] = safe_reading,
     failed: Callable[[], str] = str,
     frozen: Callable[[], float] = float,
     pauses: Callable[[], PauseWatch | None] = lambda: None,
@@ -42,6 +44,7 @@ def device_diagnostics(
         evidence: symptoms of drives.
         ticked: returns the age of the last tick in s.
         rate: returns the ticks per second.
+        report: returns the reading of a device.
         failed: returns a failure of its control, "" if there is none.
         frozen: returns for how many s its control was frozen, until staff acknowledge it.
         pauses: returns the watch over late data.
@@ -55,9 +58,9 @@ def device_diagnostics(
         if getattr(device, "drives", True):  # other links are reported by the devices behind them
             named.setdefault(device.name, []).append(device)
     reports: dict[str, Report] = {
-        name: partial(_worst, robot, devices) for name, devices in named.items()
+        name: partial(_worst, robot, devices, report) for name, devices in named.items()
     }
-    reports["base"] = lambda: evidence.base(base.reading())
+    reports["base"] = lambda: evidence.base(report(base))
 
     def of_ticks(reading: Reading) -> Reading:
         return reading._replace(rate=rate()) if reading.rate is None else reading
@@ -105,10 +108,10 @@ def device_diagnostics(
     return reports
 
 
-def _worst(robot: Robot, devices: Sequence[Device]) -> Reading:
+def _worst(robot: Robot, devices: Sequence[Device], report: Callable[[Device], Reading]) -> Reading:
     """Return the worst reading of several devices with the same name."""
 
     def badness(reading: Reading) -> tuple[int, float]:
         return STATES.index(state_of(robot.devices.get(reading.device), reading)), reading.age
 
-    return max((device.reading() for device in devices), key=badness)
+    return max(map(report, devices), key=badness)

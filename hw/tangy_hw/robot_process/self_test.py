@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
-from tangy_hw.device_protocols import PROTOCOLS, Device, DeviceError, MachineClock
+import numpy as np
+
+from tangy_hw.device_protocols import PROTOCOLS, Base, Device, DeviceError, Laser, MachineClock
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.registry import Wiring, known_drivers, open_device
+from tangy_hw.navigation.limits import laser_of
 from tangy_hw.perception.camera_hub import Sources
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
+from tangy_hw.robot_process.driver_checks import fails, hangs, odometry_problem, scan_problem
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, NEVER, OK, WARN, Reading
-from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import load_room
 
+START_SECONDS = 10.0
+CLOSE_SECONDS = 5.0
 SECONDS = 5.0  # for a working device to send data: cameras take longest
 TICK_SECONDS = 0.05
+NEEDED = ("base", "laser")
 SEATED = ("1", "2", "3", "4")  # the people do not matter here
 
 
@@ -79,7 +87,10 @@ async def try_robot(
             started.append(one)
             name = next((name for name, device in opened.items() if device is one), "")
             try:
-                await one.start()
+                async with asyncio.timeout(START_SECONDS):
+                    await one.start()
+            except TimeoutError:
+                found[name] = SelfTestResult(name, False, hangs(START_SECONDS))
             except Exception as error:
                 if not name:
                     raise
@@ -97,7 +108,9 @@ async def try_robot(
                 found[name] = _fails(name, error)
     finally:
         for one in reversed(started):
-            await one.close()
+            with suppress(Exception):  # the others must be closed as well
+                async with asyncio.timeout(CLOSE_SECONDS):
+                    await one.close()
     if REQUESTS in robot.devices:
         found[REQUESTS] = await _try_requests(robot, seconds)
     for name, device in robot.devices.items():
@@ -107,8 +120,10 @@ async def try_robot(
     driven = {device for driver in known_drivers().values() for device in driver.devices}
     for name in driven - {"navigator"}:  # Tangy's own navigator replaces a missing one
         if name in robot.devices and name not in found:
-            what = f"it has no driver: name one under [drivers] in {robot.file.name}."
-            found[name] = SelfTestResult(name, False, what, absent=True)
+            needed = name in NEEDED and bool(robot.drivers)
+            without = ", and Tangy cannot drive without one" if needed else ""
+            what = f"it has no driver{without}: name one under [drivers] in {robot.file.name}."
+            found[name] = SelfTestResult(name, False, what, absent=not needed)
     return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
             if name in found]  # fmt: skip
 
@@ -146,7 +161,7 @@ def _works(device: Device | Camera) -> bool:
 
 def _fails(name: str, error: Exception) -> SelfTestResult:
     """Return the result of a driver, perhaps of another package, that raises an error."""
-    return SelfTestResult(name, False, plain(f"its driver fails: {type(error).__name__}: {error}."))
+    return SelfTestResult(name, False, fails(error))
 
 
 def _tried(
@@ -155,8 +170,11 @@ def _tried(
     where = _where(robot, name, device)
     reading = device.reading()
     if reading.state == OK and reading.age < NEVER:
+        if problem := _data_problem(robot, name, device, reading):
+            return SelfTestResult(name, False, f"{where} sends wrong data: {problem}")
         if not (lacks := _missing_facts(robot, name, device, reading)):
-            return SelfTestResult(name, True, f"{where} works.")
+            measured = _measured(robot, name, device, reading)
+            return SelfTestResult(name, True, f"{where} works{measured and f': {measured}'}.")
         text = f"{where} reports no {' and no '.join(lacks)}, which {robot.file.name} lists."
         return SelfTestResult(name, False, text)
     if isinstance(device, Camera):
@@ -173,6 +191,49 @@ def _tried(
     if reading.state == WARN:
         return SelfTestResult(name, False, f"{where} warns that something is wrong with it.")
     return SelfTestResult(name, False, f"{where} has sent nothing within {seconds:g} s.")
+
+
+def _data_problem(robot: Robot, name: str, device: Device | Camera, reading: Reading) -> str:
+    """Return what is wrong with the data of a device, "" if nothing is."""
+    now = MachineClock().now()
+    if name == "laser" and (scan := cast(Laser, device).scan) is not None:
+        return scan_problem(scan, now)
+    if name == "base" and (odometry := cast(Base, device).odometry) is not None:
+        return odometry_problem(odometry, now)
+    known = robot.devices[name].facts if name in robot.devices else {}
+    for fact, value in reading.facts.items():
+        measure = known.get(fact)
+        if measure is not None and value == value and (why := measure.wrong(value)):
+            return f"{fact} = {value} {why}"
+    return ""
+
+
+def _measured(robot: Robot, name: str, device: Device | Camera, reading: Reading) -> str:
+    """Return what a device measures, to compare it with the robot: "" if nothing is known."""
+    if name == "laser" and (stamped := cast(Laser, device).scan) is not None:
+        scan = stamped.value
+        span = math.degrees(abs(scan.step) * (len(scan.ranges) - 1))
+        told = f"{len(scan.ranges)} beams over {span:.0f}°"
+        if not np.isfinite(scan.ranges).any():
+            return f"{told}, and none of them meets anything"
+        nearest = int(np.argmin(scan.ranges))
+        bearing = scan.first + scan.step * nearest + laser_of(robot).heading
+        side = round(math.degrees(math.atan2(math.sin(bearing), math.cos(bearing))))
+        where = f"{abs(side)}° to its {'left' if side > 0 else 'right'}" if side else "ahead"
+        return f"{told}, the nearest thing {scan.ranges[nearest]:.2f} m away, {where}"
+    if name == "base" and (moved := cast(Base, device).odometry) is not None:
+        x, y, heading = moved.value.pose
+        return f"odometry {x:.2f}, {y:.2f} m, {math.degrees(heading):.0f}°"
+    if isinstance(device, Camera) or name in PROTOCOLS:
+        return ""
+    words = {True: "yes", False: "no"}
+    facts = [
+        f"{fact} {words[value] if isinstance(value, bool) else value}"
+        if isinstance(value, str | bool)
+        else f"{fact} {value:.3g}"
+        for fact, value in reading.facts.items()
+    ]
+    return ", ".join(facts)
 
 
 def _missing_facts(robot: Robot, name: str, device: Device | Camera, reading: Reading) -> list[str]:
