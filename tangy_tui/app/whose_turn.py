@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from tangy_profiles.planned_game import PlannedGame
     from tangy_profiles.state import ActivityState
     from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.plan_controls import ClaimNow
     from tangy_tui.app.staff_view import PersonNow
     from tangy_tui.learning.policy import Decision
 
@@ -48,6 +49,10 @@ class GameMoment:
     """Who stopped the robot, the name of a fault, the reason for a question, or a behaviour."""
     welcomes: tuple[str, ...] = ()
     """The names of new people, for whom Tangy is being set up."""
+    claim: ClaimNow | None = None
+    """The last claim, while it is news."""
+    calling: str = ""
+    """The label of the number that is being called."""
     stepping: bool = False
     """Whether a step is being carried out, also while the game is paused."""
     people: tuple[PersonNow, ...] = ()
@@ -115,6 +120,8 @@ def present_moment(control: GameController) -> GameMoment:
         holder,
         about,
         control.welcomes,
+        control.plan.claim,
+        control.plan.calling,
         control.stepping,
         people,
         near,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.whose_turn import present_moment, turn_of
-from tangy_tui.text.control import noted_words, stopped_words
+from tangy_tui.text.control import claimed_words, noted_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.staff_view import OVER, STEP_SECONDS, lasting_words, next_words, welcomes_words
@@ -57,7 +57,7 @@ def now_lines(activity: Activity, moment: GameMoment, name: Name) -> list[str]:
         moment: the present moment.
         name: returns a person's name for an id.
     """
-    told, about = [held_words(moment)], ""
+    told, about = [held_words(moment), _claim_words(moment, name)], ""
     if moment.holder in ("", "paused", "stopped"):
         step, about = _step_words(activity, moment, name)
         told.append(step)
@@ -98,6 +98,13 @@ def held_words(moment: GameMoment) -> str:
             return "The game is paused. Tangy does nothing until you let it go on."
         case forgotten:
             assert_never(forgotten)
+
+
+def _claim_words(moment: GameMoment, name: Name) -> str:
+    """Tell the result of a claim that the group has not been told yet; "" if there is none."""
+    if (claim := moment.claim) is None or claim.told is not None:
+        return ""
+    return claimed_words(claim, name, moment.calling)
 
 
 def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str, str]:
@@ -196,9 +203,9 @@ def turn_lines(turn: PersonTurn, name: Name, now: datetime | None) -> list[str]:
             f"{who} is not here, as far as Tangy knows, so it does not go there.",
             f"If {who} is back, type: here {who}.",
         ]
+    told = [held_words(moment), _claim_words(moment, name)]
     if not person.goes_round:
-        return [*filter(None, [held_words(moment)]), _turn_words(turn, name)]
-    told = [held_words(moment)]
+        return [*filter(None, told), _turn_words(turn, name)]
     match person.state:
         case "visited":
             told.append(f"Tangy is with {who} now{_because(moment, person, name)}.")

@@ -140,6 +140,16 @@ def test_a_claim_comes_first(robot: Robot) -> None:
     assert now(robot)[0] == "Tangy goes to Ida next, because of the claim."
 
 
+def test_a_claim_that_waits_for_the_present_step_is_told(robot: Robot) -> None:
+    robot.next(2)
+    ask(robot, "user3")
+    robot.control.plan.say_early(ClaimCard(17, "user2"))
+    waits = "Card 17 (Ida) does not win yet. Tangy finishes this, then tells everybody."
+    assert about(robot, "user3")[0] == now(robot)[0] == waits
+    robot.control.apply(ClaimCard(17, "user2"))
+    assert waits not in [*about(robot, "user3"), *now(robot)]
+
+
 def test_numbers_that_come_first_are_counted(taught: Path) -> None:
     planned = Planned(taught, users=24)
     planned.begin(GamePlan(("full card",), visits=True, pace=5))
