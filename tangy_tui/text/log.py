@@ -33,7 +33,7 @@ from tangy_tui.text.report import (
 from tangy_tui.text.results import progress_line, response_line
 from tangy_tui.text.session_page import CARE, HOW_LONG, NOBODY_NAMED, RESPONDED
 from tangy_tui.text.sessions import note_words, status_words
-from tangy_tui.text.situations import reason_of
+from tangy_tui.text.situations import addressed_step, reason_of
 from tangy_tui.text.staff_actions import action_line, chosen_words, with_behaviour
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
@@ -126,7 +126,7 @@ def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[st
 
 
 def step_sentence(done: Done, activity: Activity | None, name: Name) -> str:
-    """Tell what Tangy did and why: "Go to the user (Rosa), because somebody asks for help."."""
+    """Tell what Tangy did and why: "Go to Rosa, because somebody asks for help."."""
     situation = done.state.situation
     behaviour, why, clause = done.behaviour, " / ".join(situation), False
     if activity is not None:
@@ -135,10 +135,9 @@ def step_sentence(done: Done, activity: Activity | None, name: Name) -> str:
     if done.teacher:
         why, clause = "", False
     whom = name(done.target) if done.target else ""
-    notes = "; ".join(filter(None, (whom, "" if clause else why)))
+    step = addressed_step(behaviour, whom, "" if clause else why)
     parts = (
-        f"{behaviour[:1].upper()}{behaviour[1:]}",
-        f" ({notes})" if notes else "",
+        f"{step[:1].upper()}{step[1:]}",
         f", with {done.strategy}" if done.strategy else "",
         f", because {why}" if clause else "",
         f", as {done.teacher} said" if done.teacher else "",

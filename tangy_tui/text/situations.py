@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -36,6 +37,9 @@ OVER_NOW = "the game is over"
 
 MOST_STEPS = 3
 """The steps named for each answer of a conflict."""
+
+SOMEBODY = re.compile(r"\bthe (user|player|person|resident|guest)\b")
+"""The words of activities for a person whose name they do not know."""
 
 Name = Callable[[str], str]
 """Returns a person's name for an id."""
@@ -87,6 +91,19 @@ def reason_of(activity: Activity, state: ActivityState, name: Name) -> tuple[str
     if isinstance(activity, DeclaredActivity):
         return why, bool(activity.declaration.stage(state.stage).words)
     return why, why in {label for rule in activity.stage_rules for label in rule.label.values()}
+
+
+def addressed_step(words: str, whom: str, why: str = "") -> str:
+    """Tell a step, to whom, and in which situation: "encourage Rosa (helping: all correct)".
+
+    Args:
+        words: the behaviour's words.
+        whom: the name of the person concerned; "": nobody.
+        why: the situation; "": it is told elsewhere.
+    """
+    told, named = SOMEBODY.subn(lambda _: whom, words, count=1) if whom else (words, 0)
+    notes = "; ".join(filter(None, ("" if named else whom, why)))
+    return f"{told} ({notes})" if notes else told
 
 
 def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:

@@ -14,7 +14,7 @@ from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words
 from tangy_tui.text.numbers import counted, listed
-from tangy_tui.text.situations import reason_of
+from tangy_tui.text.situations import addressed_step, reason_of
 
 Fact: TypeAlias = str | tuple[str, ...]
 """A fact in words; several: the same in shorter and shorter words."""
@@ -140,12 +140,12 @@ def next_words(
         whom = name(state.attended) if behaviour.attends and state.attended else ""
     if whom and state.attended in claims:
         why, clause = CLAIM_FIRST, False
-    notes = "; ".join(filter(None, (whom, "" if clause else why)))
+    step = addressed_step(done, whom, "" if clause else why)
     because = f", because {why}" if clause else ""
     if waits and not calls_first:
         because = TIME_FIRST
     calls = f" {calls_first_words(calls_first, then)}" if calls_first else ""
-    return f"Next: {done}{f' ({notes})' if notes else ''}{because}.{calls}"
+    return f"Next: {step}{because}.{calls}"
 
 
 def plays_on_words(pattern: str) -> str:

@@ -41,7 +41,7 @@ def test_until_the_card_is_read_the_next_step_is_to_look_at_it(robot: Robot) -> 
     assert [words == looks for do, words in shown if do == "card"] == [True]
     assert next_of(robot).startswith("Next: ask to move the card closer")
     (arrives,) = (words for do, words in shown if do == "go")
-    assert arrives.startswith("Next: go to the user")
+    assert arrives.startswith(f"Next: go to {name}")
 
 
 def test_the_last_words_of_tangy_are_known_while_it_speaks(robot: Robot) -> None:
@@ -87,7 +87,7 @@ def test_who_comes_first_by_a_claim_is_told_so(robot: Robot) -> None:
     assert person_words(view["user3"]).startswith("first: a claim, asks")
     assert not view["user1"].claims
     name = robot.workspace.name("user3")
-    assert next_of(robot) == f"Next: go to the user ({name}; first because of the claim)."
+    assert next_of(robot) == f"Next: go to {name} (first because of the claim)."
 
 
 def test_the_reason_stands_before_the_visit() -> None:

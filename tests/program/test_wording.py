@@ -13,7 +13,7 @@ from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_tui.monitoring.evidence import STATES, evidence_words
 from tangy_tui.text.drills import device_words
 from tangy_tui.text.faults import status_words
-from tangy_tui.text.situations import card_words, state_words, step_words
+from tangy_tui.text.situations import addressed_step, card_words, state_words, step_words
 from tests.support.declared import declared
 
 NUMBERS = tuple(range(1, 26))
@@ -102,3 +102,24 @@ def test_a_silent_device_has_the_same_words_everywhere() -> None:
         "drill": device_words([(device.label, STALE), ("another", OK)]),
     }
     assert [place for place, words in told.items() if STATES[STALE] not in words] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "whom", "why", "told"),
+    [
+        ("go to the user", "Rosa", "", "go to Rosa"),
+        (
+            "encourage the user",
+            "Rosa",
+            "helping: all correct",
+            "encourage Rosa (helping: all correct)",
+        ),
+        ("ask to mark numbers", "Rosa", "missed", "ask to mark numbers (Rosa; missed)"),
+        ("go to the user", "", "", "go to the user"),
+        ("give the player a hint", r"O\1", "", r"give O\1 a hint"),
+    ],
+)
+def test_a_step_names_the_person_in_place_of_the_user(
+    words: str, whom: str, why: str, told: str
+) -> None:
+    assert addressed_step(words, whom, why) == told
