@@ -57,6 +57,11 @@ def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
     return settled
 
 
+def called_wrong(resolutions: Iterable[Resolution], step: Step) -> bool:
+    """Return whether a teacher called a step wrong: nothing is learnt from it."""
+    return any(said.sets_aside(step) for said in resolutions)
+
+
 def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[DemonstratedStep]:
     """Yield every step with its demonstration and number; skip copies of earlier steps."""
     known: set[int] = set()

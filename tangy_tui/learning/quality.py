@@ -12,7 +12,7 @@ from typing import Literal
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.learning.conflicts import Conflict, find_conflicts
+from tangy_tui.learning.conflicts import Conflict, called_wrong, find_conflicts
 from tangy_tui.learning.early_ends import missed_end
 from tangy_tui.learning.library_entries import Library, LibraryEntry
 
@@ -132,7 +132,7 @@ def _answers(
         if others:
             numbers = sorted({library.number(id) for found in others for id in found})
             yield QualityNote("disagrees", len(others), tuple(numbers))
-    wrong = sum(any(r.sets_aside(step) for r in library.resolutions) for step in shown.steps)
+    wrong = sum(called_wrong(library.resolutions, step) for step in shown.steps)
     if wrong:
         yield QualityNote("called wrong", wrong)
 

@@ -17,6 +17,7 @@ NONE_TO_LIST = "No demonstrations yet: choose Teach at home to show Tangy a game
 
 NO_STEPS = "It has no steps."
 NOTHING_LOST = "Nothing is lost: {undo} takes it back."
+NOT_LEARNT = "no: a teacher called this step wrong"
 AGAIN_DETAIL = (
     "The steps before it stay as they are. The old demonstration is replaced only when you have "
     "shown the game to its end."

@@ -77,6 +77,16 @@ def step_words(
     return f"{moment_words(activity, step.state, name)} -> {done}"
 
 
+WRONG_STEP = "x wrong: "
+"""Stands before a step that a teacher called wrong."""
+
+
+def marked_step(words: str, *, wrong: bool) -> str:
+    """Mark the words of a step if a teacher called it wrong."""
+    plain_words = words.removeprefix(WRONG_STEP)
+    return f"{WRONG_STEP}{plain_words}" if wrong else plain_words
+
+
 def moment_words(activity: Activity, state: ActivityState, name: Name) -> str:
     """Format the situation of a state, with the person it is about if its words name one."""
     if isinstance(activity, DeclaredActivity):

@@ -12,6 +12,7 @@ from textual.widgets import Static
 from tangy_profiles.state import ActivityState, Situation
 from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.conflicts import called_wrong
 from tangy_tui.learning.coverage import Coverage, coverage, missing_words
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import (
@@ -112,6 +113,7 @@ class TeachingPicture:
                 self.step(event)
             case Settled():
                 self._log.write(settled_words(event, self._teaching.activity), "dim")
+                self.mark_wrong()
             case Announced(arranged):
                 words = arranged_words(self._teaching.activity, arranged, self._teaching.name)
                 self._log.write(words, "good")
@@ -125,6 +127,15 @@ class TeachingPicture:
                 self.beginning(resumed)
             case Finished():
                 self._log.write(text.complete_words(self._teaching), "good")
+
+    def mark_wrong(self) -> None:
+        """Mark the steps that a teacher called wrong."""
+        library = read_library(self._workspace.store, self._teaching.activity.name)
+        steps = self._teaching.demonstration.steps
+        wrong = [called_wrong(library.resolutions, step) for step in steps]
+        for shown in self._screen.query(Transcript):
+            if shown.count == len(steps):
+                shown.mark_wrong(wrong)
 
     def _rule(self, event: Ruled | RuleUndone) -> None:
         """Show the last step as a rule, or again as a step."""
@@ -156,6 +167,7 @@ class TeachingPicture:
         """Show steps that were undone, the last one first."""
         words = text.undone_words(undone, self._teaching.activity)
         self._log.write(self._told(words), "warn")
+        self.mark_wrong()
         self._screen.query_one(RoomView).say("")
         self._scene(self._teaching.world.observe().place)
 
@@ -170,6 +182,7 @@ class TeachingPicture:
                 for step, numbers in zip(shown.steps, teaching.numbers, strict=True)
             ]
         )
+        self.mark_wrong()
         self._scene(teaching.world.observe().place)
         goes_on = resumed or shown.origin == "again"
         words = text.beginning_words(teaching, resumed=resumed)

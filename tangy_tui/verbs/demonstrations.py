@@ -62,6 +62,7 @@ def show(
     as_json: Json = False,
 ) -> None:
     """Show one demonstration, step by step."""
+    from tangy_tui.learning.conflicts import called_wrong
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.documents import demonstration_document
     from tangy_tui.text.situations import step_words
@@ -75,7 +76,7 @@ def show(
             return
         print(plain(f"{library.name(shown.id)} ({shown.id}) by {shown.teacher}:"))
         for number, step in enumerate(shown.steps, 1):
-            wrong = any(said.sets_aside(step) for said in library.resolutions)
+            wrong = called_wrong(library.resolutions, step)
             failed = "" if step.completed else " (could not be done)"
             note = " (a teacher called it wrong)" if wrong else failed
             print(

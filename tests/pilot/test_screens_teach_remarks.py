@@ -9,10 +9,13 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import RemarkAnswer
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.text.demonstrations import NOT_LEARNT
+from tangy_tui.text.situations import WRONG_STEP
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.dialogs.remark import RemarkDialog
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.transcript import Transcript
@@ -86,6 +89,44 @@ async def test_a_contradiction_is_answered_in_place(
         assert isinstance(pilot.app.screen, TeachScreen)
         (said,) = read_library(workspace.store, "bingo").resolutions
         assert said.right == right
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("key", "wrong"), [("1", False), ("2", True), ("3", False)])
+async def test_a_step_that_was_called_wrong_is_marked_among_the_steps(
+    run: Run, workspace: Workspace, key: str, wrong: bool
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        await pilot.press(key)
+        await pilot.pause()
+        first, last = pilot.app.screen.query_one(Transcript).steps
+        assert not first.startswith(WRONG_STEP)
+        assert last.startswith(WRONG_STEP) is wrong
+        assert ("2 x wrong: a number is due" in screen_text(pilot.app)) is wrong
+        await pilot.press("f2")  # the answer is undone with the step
+        await pilot.press("f3")
+        await pilot.pause()
+        assert all(
+            not step.startswith(WRONG_STEP) for step in pilot.app.screen.query_one(Transcript).steps
+        )
+
+
+@pytest.mark.slow
+async def test_a_step_that_was_called_wrong_is_marked_in_the_library(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await contradict(pilot)
+        await pilot.press("2")
+        await pilot.pause()
+        bea = read_library(workspace.store, "bingo").demonstrations[-1]
+        await pilot.app.push_screen(DemonstrationScreen(workspace, bea.id, 2))
+        await pilot.pause()
+        await pilot.pause()
+        shown = screen_text(pilot.app)
+        assert "2 x wrong: a number is due" in shown
+        assert NOT_LEARNT in shown
 
 
 @pytest.mark.slow

@@ -13,11 +13,12 @@ from textual.widgets import Static
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.conflicts import called_wrong
 from tangy_tui.learning.demonstration_rows import heard_words, state_of
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.quality import quality_notes
-from tangy_tui.text.demonstrations import AGAIN_DETAIL, NO_STEPS, again_words
+from tangy_tui.text.demonstrations import AGAIN_DETAIL, NO_STEPS, NOT_LEARNT, again_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.quality import quality_words
 from tangy_tui.text.situations import step_words
@@ -99,6 +100,7 @@ class DemonstrationScreen(TangyScreen[None]):
         steps = self.query_one(Transcript)
         workspace = self._workspace
         steps.fill([step_words(workspace.activity, s, workspace.name) for s in self.shown.steps])
+        steps.mark_wrong([self._wrong(step) for step in self.shown.steps])
         self.call_after_refresh(steps.point, self._number)
         self._tell(min(max(1, self._number), len(self.shown.steps)))
 
@@ -116,6 +118,9 @@ class DemonstrationScreen(TangyScreen[None]):
     def action_leave(self) -> None:
         """Close the screen."""
         self.leave(None)
+
+    def _wrong(self, step: Step) -> bool:
+        return called_wrong(self._library.resolutions, step)
 
     def _summary(self) -> str:
         entry, shown = self._entry, self.shown
@@ -140,6 +145,7 @@ class DemonstrationScreen(TangyScreen[None]):
             ("Situation", f"{activity.in_words(step.state.situation)}; Tangy is {place}"),
             ("Heard", self._heard.get(number, "")),
             ("Done", done + ("" if step.completed else " (could not be carried out)")),
+            ("Learnt", NOT_LEARNT if self._wrong(step) else ""),
             ("Then", activity.in_words(step.after.situation)),
         ]
         parts: list[str | tuple[str, str]] = []

@@ -12,6 +12,7 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.conflicts import called_wrong
 from tangy_tui.learning.demonstration_rows import ListRow, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library_entries import Edit
@@ -285,6 +286,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         transcript = self.query_one(Transcript)
         transcript.border_title = text.steps_title(row.number)
         transcript.fill(words)
+        transcript.mark_wrong([called_wrong(self._library.resolutions, step) for step in steps])
 
     def _show_notes(self) -> None:
         """Show the notes of a demonstration, or why an edit is not possible."""

@@ -394,5 +394,6 @@ class TeachScreen(TangyScreen[bool]):
         self.close(True)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
-        """Listen for names with their present pronunciation."""
+        """Listen for names as they are said now, and mark steps that were called wrong."""
         self._listener.refresh()
+        self._picture.mark_wrong()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from functools import lru_cache
 
 from rich.cells import cell_len
 from textual.message import Message
 
 from tangy_tui.text.phrases import NONE_FOUND
+from tangy_tui.text.situations import WRONG_STEP, marked_step
 from tangy_tui.text.teaching import NO_STEPS
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
@@ -92,6 +94,15 @@ class Transcript(Choosable):
         self.steps.append(clean(step))
         self._show()
 
+    def mark_wrong(self, wrong: Sequence[bool]) -> None:
+        """Mark the steps that a teacher called wrong, and no others; one entry for each step."""
+        kept = wrong[len(wrong) - len(self.steps) :]
+        marked = [marked_step(s, wrong=w) for s, w in zip(self.steps, kept, strict=True)]
+        if marked != list(self.steps):
+            self.steps.clear()
+            self.steps.extend(marked)
+            self._show()
+
     def remove_last(self) -> None:
         """Remove the last step."""
         if self.steps:
@@ -174,10 +185,13 @@ def _row(number: int, step: str, digits: int, width: int) -> Row:
     """Format one step; if there is little room, the behaviour is cut last."""
     situation, arrow, behaviour = step.partition(f" {ARROW} ")
     label = f"{number:>{digits}} "
-    room = width - len(label)
+    wrong = WRONG_STEP if situation.startswith(WRONG_STEP) else ""
+    situation = situation.removeprefix(wrong)
+    room = width - len(label) - len(wrong)
+    head: Row = ((label, "dim"), (wrong, "bad")) if wrong else ((label, "dim"),)
     if not arrow:
-        return ((label, "dim"), (shorten(step, room), "text"))
+        return (*head, (shorten(situation, room), "text"))
     tail = cell_len(f" {ARROW} {behaviour}")
     situation = shorten(situation, max(SITUATION_FROM, room - tail))
     behaviour = shorten(behaviour, room - cell_len(situation) - len(ARROW) - 2)
-    return ((label, "dim"), (situation, "text"), (f" {ARROW} ", "dim"), (behaviour, "strong"))
+    return (*head, (situation, "text"), (f" {ARROW} ", "dim"), (behaviour, "strong"))
