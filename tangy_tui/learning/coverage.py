@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_tui.learning.conflicts import shown_steps
+from tangy_tui.learning.teaching_events import NewWording, Remark
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,13 @@ def coverage(activity: Activity, demonstrations: Iterable[Demonstration]) -> Cov
     """Count the demonstrated steps in each situation that can occur."""
     counts = Counter(shown.step.state.situation for shown in shown_steps(demonstrations))
     return Coverage({situation: counts[situation] for situation in activity.situations})
+
+
+def standing(shown: Demonstration, remark: Remark | None) -> Demonstration:
+    """Return a demonstration without its last step while a remark asks whether it was a slip."""
+    if remark is None or isinstance(remark, NewWording):
+        return shown
+    return replace(shown, steps=shown.steps[:-1])
 
 
 def missing_words(activity: Activity, found: Coverage) -> list[str]:

@@ -13,7 +13,7 @@ from tangy_profiles.state import ActivityState, Situation
 from tangy_tui.app.tour import Tour, TourStop
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import called_wrong
-from tangy_tui.learning.coverage import Coverage, coverage, missing_words
+from tangy_tui.learning.coverage import Coverage, coverage, missing_words, standing
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import (
     Announced,
@@ -71,12 +71,14 @@ class ShownSoFar:
         return Coverage({s: times + here[s] for s, times in self._before.times.items()})
 
     def here(self) -> Coverage:
-        """Count the situations shown in this game."""
-        return coverage(self._workspace.activity, [self._teaching.demonstration])
+        """Count the situations shown in this game; a step counts once it is no slip."""
+        shown = standing(self._teaching.demonstration, self._teaching.remark)
+        return coverage(self._workspace.activity, [shown])
 
     def first(self, situation: Situation) -> bool:
         """Return whether the last step was the first one ever in its situation."""
-        return self.now().times.get(situation) == 1
+        here = coverage(self._workspace.activity, [self._teaching.demonstration])
+        return self._before.times.get(situation, 0) + here.times.get(situation, 0) == 1
 
 
 WRAPPING = 14  # characters that wrapping may waste on two lines
@@ -99,6 +101,7 @@ class TeachingPicture:
         self._workspace = workspace
         self._teaching = teaching
         self._shown = ShownSoFar(workspace, teaching)
+        self._new: Situation | None = None  # of the last step, and not told yet
         self.tour: Tour | None = None
         """The tour, while a new teacher takes it."""
 
@@ -151,11 +154,25 @@ class TeachingPicture:
         self._screen.query_one(Transcript).append(
             step_words(activity, event.step, self._teaching.name, event.outcome.numbers)
         )
-        if self._shown.first(situation):
-            self._log.write(text.new_words(activity.in_words(situation)), "good")
+        self._tell_new()
+        self._new = situation if self._shown.first(situation) else None
+        if self._stands:
+            self._tell_new()
         self._log.write(event.speech)
         self._screen.query_one(RoomView).say(event.speech)
         self._scene(event.step.state.place)
+
+    @property
+    def _stands(self) -> bool:
+        shown = self._teaching.demonstration
+        return standing(shown, self._teaching.remark) is shown
+
+    def _tell_new(self) -> None:
+        """Tell that the last step was in a situation new to Tangy, once the step stands."""
+        if self._new is not None:
+            words = self._teaching.activity.in_words(self._new)
+            self._log.write(text.new_words(words), "good")
+            self._new = None
 
     def remark(self, remark: Remark) -> None:
         """Show a remark on a step that may have overlooked something."""
@@ -167,6 +184,7 @@ class TeachingPicture:
         """Show steps that were undone, the last one first."""
         words = text.undone_words(undone, self._teaching.activity)
         self._log.write(self._told(words), "warn")
+        self._new = None
         self.mark_wrong()
         self._screen.query_one(RoomView).say("")
         self._scene(self._teaching.world.observe().place)
@@ -176,6 +194,7 @@ class TeachingPicture:
         teaching = self._teaching
         shown = teaching.demonstration
         self._shown.begin()
+        self._new = None
         self._screen.query_one(Transcript).fill(
             [
                 step_words(teaching.activity, step, teaching.name, numbers)
@@ -193,6 +212,8 @@ class TeachingPicture:
         teaching = self._teaching
         shown = teaching.demonstration
         state = teaching.world.observe()
+        if self._stands:
+            self._tell_new()
         found = self._shown.now()
         self._coverage(found)
         mode = "guided" if shown.guided else "teach"

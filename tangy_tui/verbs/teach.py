@@ -231,10 +231,10 @@ def _play(workspace: Workspace, teacher: str) -> None:
 
 def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:
     """Tell which situations the finished and the present demonstrations cover."""
-    from tangy_tui.learning.coverage import coverage, missing_words
+    from tangy_tui.learning.coverage import coverage, missing_words, standing
     from tangy_tui.learning.library import read_library
 
-    present = teaching.demonstration
+    present = standing(teaching.demonstration, teaching.remark)
     library = read_library(workspace.store, workspace.activity.name)
     shown = [d for d in library.finished if d.id != present.id]
     found = coverage(workspace.activity, [*shown, present])

@@ -11,6 +11,7 @@ from tangy_tui.learning.teaching_events import RemarkAnswer
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.text.demonstrations import NOT_LEARNT
 from tangy_tui.text.situations import WRONG_STEP
+from tangy_tui.text.teaching import new_words
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.dialogs.remark import RemarkDialog
@@ -18,6 +19,7 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, screen_text
 from tests.support.waiting import until_shown
@@ -127,6 +129,29 @@ async def test_a_step_that_was_called_wrong_is_marked_in_the_library(
         shown = screen_text(pilot.app)
         assert "2 x wrong: a number is due" in shown
         assert NOT_LEARNT in shown
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("key", "stands"), [("1", False), ("escape", True)])
+async def test_a_step_counts_as_shown_once_it_is_no_slip(
+    run: Run, workspace: Workspace, key: str, stands: bool
+) -> None:
+    new = new_words("a number is due")
+    async with run(app=program(workspace)) as pilot:
+        for phrase in ("greet everyone", "say goodbye"):
+            await pilot.press(*phrase, "enter")
+            await pilot.pause()
+            await pilot.press("y")
+            await pilot.pause()
+        assert isinstance(pilot.app.screen, RemarkDialog)  # it ended the game early
+        said = pilot.app.screen_stack[-2].query_one(LogView).sentences
+        assert "seen 1/11" in screen_text(pilot.app)
+        assert new not in said
+        await pilot.press(key)
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, TeachScreen))
+        assert ("seen 2/11" in screen_text(pilot.app)) is stands
+        said = pilot.app.screen.query_one(LogView).sentences
+        assert (new in said) is stands
 
 
 @pytest.mark.slow
