@@ -40,6 +40,10 @@ REQUESTS = [
     ("please make us laugh", "joke"),
     ("say something kind to him", "encourage"),
     ("she won, clap for the winner", "celebrate"),
+    ("help her put her card so that you can see it", "move card closer"),
+    ("help Rosa hold her card so that you see it", "move card closer"),
+    ("help her put a marker on her card", "mark numbers"),
+    ("help her take the marker off her card", "remove markers"),
 ]
 VISITS = [
     ("player one needs a hand", "user1"),
