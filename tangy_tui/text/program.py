@@ -6,6 +6,15 @@ from pathlib import Path
 
 TAGLINE = "Teach a robot a group activity, and let it run that activity."
 
+
+def no_command_here(typed: str) -> str:
+    """Tell that words typed on the home screen began nothing, and where they belong."""
+    return (
+        f"“{typed}” began nothing: here a letter goes to a line, and Enter chooses it. To tell "
+        "Tangy what to do, choose Teach first (t, Enter)."
+    )
+
+
 NOTHING_MOVES = "Nothing is moving."
 MOUSE_ON = "Mouse on. Press {mouse} to turn it off and select text."
 MOUSE_OFF = "Mouse off: you can select text. Press {mouse} to turn it on again."

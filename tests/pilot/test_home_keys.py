@@ -16,7 +16,7 @@ from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.home import HomeScreen, Menu
 from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.screens.set_up import SetUpScreen
 from tangy_tui.ui.screens.teach import TeachScreen
@@ -35,6 +35,50 @@ async def test_a_repeated_key_opens_one_screen(keys: str, run: Run, workspace: W
             await pilot.pause(0.05)
         assert isinstance(pilot.app.screen_stack[0], HomeScreen)
         assert len(pilot.app.screen_stack) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words", ["call number", "greet everyone", "play bingo", "mark it", "delete all", "PLEASE GO"]
+)
+async def test_words_typed_at_home_begin_nothing_and_tell_where_they_belong(
+    words: str, run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock()), notifications=True) as pilot:
+        pilot.type(*("space" if letter == " " else letter for letter in words), "enter")
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        assert read_library(workspace.store, "bingo").entries == {}
+        *_, told = (one.message for one in pilot.app._notifications)
+        assert f"{words[-2:]}” began nothing" in told
+        await pilot.press("t", "enter")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, TeachScreen))
+
+
+async def test_pasted_words_at_home_begin_nothing(run: Run, workspace: Workspace) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        pilot.app.post_message(events.Paste("call number"))
+        await pilot.pause()
+        await pilot.press("enter")
+        await pilot.pause()
+        assert len(pilot.app.screen_stack) == 1
+
+
+@pytest.mark.parametrize(
+    ("keys", "name"),
+    [
+        ("live", "Live"), ("li", "Library"), ("learn", "Learn"), ("Sens", "Sensors"),
+        ("gp", "Play"), ("j", "Guided"), ("jj", "Library"), ("p", "Play"),
+    ],
+)  # fmt: skip
+async def test_a_line_is_found_by_its_letter_or_its_name(
+    keys: str, name: str, run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        pilot.type(*keys)
+        await pilot.pause()
+        assert pilot.app.screen.query_one(Menu).chosen.name == name
 
 
 @pytest.mark.slow

@@ -12,11 +12,12 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.strip import Strip
 
-from tangy_tui.text.program import TAGLINE
+from tangy_tui.text.program import TAGLINE, no_command_here
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.keys import bind
 from tangy_tui.ui.panels import LOW, key_line
+from tangy_tui.ui.pasted_text import pasted_text
 from tangy_tui.ui.widgets.inks import InkedWidget
 from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
@@ -55,6 +56,12 @@ CHOICES = (
     MenuItem("q", "Quit", "leave Tangy"),
 )
 
+A_WORD = 3
+"""So many letters in a row are words: fewer may be a change of mind."""
+LONGEST_WORD = 40
+MOVES = ("k", "j")
+"""Letters that move the cursor: no word begins with them."""
+
 States = Callable[[], Mapping[str, str]]
 """Returns the progress of each choice, by its id: {"teach": "2 demonstrations"}."""
 
@@ -68,8 +75,8 @@ class Menu(InkedWidget, can_focus=True):
     Menu { height: 1fr; padding: 1 2 0 2; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up,k", "move(-1)", "Up", show=False),
-        Binding("down,j", "move(1)", "Down", show=False),
+        Binding(f"up,{MOVES[0]}", "move(-1)", "Up", show=False),
+        Binding(f"down,{MOVES[1]}", "move(1)", "Down", show=False),
         Binding("enter", "choose", "Choose", id="open"),
     ]
 
@@ -80,8 +87,16 @@ class Menu(InkedWidget, can_focus=True):
             super().__init__()
             self.id = id
 
+    class Typed(Message):
+        """Enter came after words that name no line."""
+
+        def __init__(self, words: str) -> None:
+            super().__init__()
+            self.words = words
+
     def __init__(self, choices: Sequence[MenuItem], id: str | None = "home") -> None:
         super().__init__(id=id)
+        self._typed = ""  # the letters since the last Enter or move
         self._choices = tuple(choices)
         self._states: Mapping[str, str] = {}
         self._at = 0
@@ -104,24 +119,56 @@ class Menu(InkedWidget, can_focus=True):
 
     def action_move(self, by: int) -> None:
         """Move the cursor."""
+        self._typed = ""
         self._at = (self._at + by) % len(self._choices)
         self.refresh()
 
     def action_choose(self) -> None:
-        """Choose the line at the cursor."""
-        self.post_message(self.Chosen(self.chosen.id))
+        """Choose the line at the cursor, unless words were typed that name no line."""
+        typed, self._typed = self._typed.strip(), ""
+        if len(typed) >= A_WORD and self._named(typed) is None:
+            self.post_message(self.Typed(typed))
+        else:
+            self.post_message(self.Chosen(self.chosen.id))
+
+    def forget_typed(self) -> None:
+        """Begin a new word."""
+        self._typed = ""
 
     def on_key(self, event: events.Key) -> None:
-        """Move the cursor to a choice by its letter; only Enter chooses (pasted text cannot)."""
-        for choice in self._choices:
-            if event.key == choice.key:
-                event.stop()
-                self.point(choice.id)
+        """Move the cursor to a choice by its letter or name; only Enter chooses."""
+        by_letter = [one for one in self._choices if one.key == event.key]
+        letter = event.character is not None and event.character.isalpha()
+        in_word, moves = bool(self._typed), event.key in MOVES
+        if event.key == "backspace":
+            self._typed = self._typed[:-1]
+        elif event.is_printable and event.character and (in_word or (letter and not moves)):
+            self._typed = f"{self._typed}{event.character}"[-LONGEST_WORD:]
+        else:
+            return
+        if in_word or by_letter:
+            event.stop()  # within a word no letter is a key of the program
+        named = self._named(self._typed) if len(self._typed) > 1 else None
+        for choice in [named] if named is not None else by_letter:
+            self.point(choice.id)
+
+    def add(self, text: str) -> None:
+        """Count text that came at once as typed words."""
+        self._typed = f"{self._typed}{clean(text)}"[-LONGEST_WORD:]
+        named = self._named(self._typed) if len(self._typed) > 1 else None
+        if named is not None:
+            self.point(named.id)
+
+    def _named(self, typed: str) -> MenuItem | None:
+        """Return the first choice whose name begins with the typed letters."""
+        begun = typed.casefold()
+        return next((c for c in self._choices if c.name.casefold().startswith(begun)), None)
 
     def on_click(self, event: events.Click) -> None:
         """Choose by mouse."""
         line = self._line(event.y - self.styles.padding.top)
         if line is not None:
+            self._typed = ""
             self._at = line
             self.refresh()
             self.action_choose()
@@ -225,6 +272,7 @@ class HomeScreen(TangyScreen[None]):
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Update the progress once the choices are drawn, which need not wait for it."""
+        self._menu.forget_typed()
         self.call_after_refresh(self._show_progress)
         self.call_after_refresh(self._take_keys)
 
@@ -235,6 +283,22 @@ class HomeScreen(TangyScreen[None]):
 
     def _show_progress(self) -> None:
         self._menu.show(self._states())
+
+    def take_letter(self, event: events.Key | events.Paste) -> bool:
+        """Take pasted text, and letters that a slow link brings at once, as words."""
+        if isinstance(event, events.Paste):
+            self._menu.add(event.text)
+            return True
+        if pasted_text(event) and event.is_printable:
+            self._menu.add(event.character or "")
+            return True
+        return False
+
+    def on_menu_typed(self, event: Menu.Typed) -> None:
+        """Tell somebody who types commands here where they belong."""
+        event.stop()
+        app: Any = self.app
+        app.say(no_command_here(event.words))
 
     def on_menu_chosen(self, event: Menu.Chosen) -> None:
         """Handle help and quit, and pass other choices to the app."""
