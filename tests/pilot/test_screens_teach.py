@@ -111,6 +111,23 @@ async def test_unknown_words_are_reported_and_stay_in_the_line(
 
 
 @pytest.mark.slow
+async def test_a_new_question_clears_old_notices(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await pilot.press(*"flurb", "enter")
+        await pilot.pause()
+        await pilot.press("escape", *"celebrate", "enter")  # nobody has won
+        await pilot.pause()
+        log = pilot.app.screen.query_one(LogView)
+        before = len(log.sentences)
+        assert "I do not know what 'flurb' means" in " ".join(log.sentences)
+        await pilot.press("escape", *"greet everyone", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert len(log.sentences) == before - 2
+        assert "flurb" not in screen_text(pilot.app)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [("escape", "escape"), (*"quit", "enter")], ids=["esc", "word"])
 async def test_leaving_a_game_reports_the_kept_steps(
     run: Run, workspace: Workspace, way: tuple[str, ...]

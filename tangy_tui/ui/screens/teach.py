@@ -182,7 +182,7 @@ class TeachScreen(TangyScreen[bool]):
         """Demonstrate the present game again from a step, counted from 1; None: not specified."""
         self.query_one(CommandBar).ready()
         if step is None:
-            self._log.write(text.WHICH_STEP, "warn")
+            self._log.notice(text.WHICH_STEP, "warn")
         else:
             self.again(self.teaching.demonstration.id, step - 1)
 
@@ -233,6 +233,7 @@ class TeachScreen(TangyScreen[bool]):
     async def alone(self, dialog: Screen[T]) -> T:
         """Wait for a dialog's answer; accept no commands until it has been applied."""
         self._listener.open(False)
+        self._log.clear_notices()
         answer = await self.app.push_screen_wait(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
             await asyncio.sleep(0)
@@ -260,7 +261,7 @@ class TeachScreen(TangyScreen[bool]):
     def action_think_no_more(self) -> None:
         """Cancel the computation, and stay here."""
         self._why.cancel()
-        self._log.write("Cancelled.", "dim")
+        self._log.notice("Cancelled.", "dim")
 
     def teaches_as(self, name: str) -> None:
         """Change the teacher; a game in progress keeps its teacher."""
@@ -306,7 +307,7 @@ class TeachScreen(TangyScreen[bool]):
 
     def take_sentence(self, sentence: str) -> bool:
         """Show a notice in the log: in a corner it would cover what is still to show."""
-        self._log.write(sentence, "dim")
+        self._log.notice(sentence, "dim")
         return True
 
     def covered(self, region: Region) -> None:
@@ -317,13 +318,13 @@ class TeachScreen(TangyScreen[bool]):
         """Stop the robot where it is drawn, until the next command."""
         self.query_one(RoomView).hold(True)
         self.query_one(CommandBar).ready()
-        self._log.write(text.STOPPED, "warn")
+        self._log.notice(text.STOPPED, "warn")
 
     def _apply(self, command: TeacherCommand) -> None:
         try:
             events = self.teaching.apply(command)
         except TangyError as error:  # logging failed, so nothing was done
-            self._log.write(str(error), "bad")
+            self._log.notice(str(error), "bad")
             self.query_one(CommandBar).ready()
             self._listener.open(True)
         else:
@@ -343,13 +344,13 @@ class TeachScreen(TangyScreen[bool]):
                     self.run_worker(self._verify(event), name="question")
                     return
                 case NotUnderstood(heard, suggestions):
-                    self._log.write(not_understood_words(heard, suggestions), "warn")
+                    self._log.notice(not_understood_words(heard, suggestions), "warn")
                     self._listener.give_back(heard)
                 case Rejected(heard):
-                    self._log.write(REJECTED, "dim")
+                    self._log.notice(REJECTED, "dim")
                     self._listener.give_back(heard)
                 case Refused():
-                    self._log.write(refused_words(event), "warn")
+                    self._log.notice(refused_words(event), "warn")
                     if event.heard:
                         self._listener.give_back(event.heard)
                 case Executed():

@@ -148,7 +148,7 @@ class TeachHearing:
     def told(self, sentence: str, kind: Kind) -> None:
         """Show a sentence about speech input in the log."""
         for log in self._screen.query(LogView):
-            log.write(sentence, kind)
+            log.notice(sentence, kind)
 
     def give_back(self, heard: str) -> None:
         """Put a command back into the bar for correction.

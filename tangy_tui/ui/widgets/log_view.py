@@ -44,6 +44,7 @@ class LogView(Filtered, can_focus=True):
         super().__init__(id=id, classes=classes)
         self.border_title = "Log"
         self._lines: deque[tuple[str, Kind]] = deque(maxlen=most)
+        self._notices = list[str]()
         self._follow = follow
         self._at_end = True
 
@@ -58,8 +59,23 @@ class LogView(Filtered, can_focus=True):
         self._lines.append((clean(sentence), kind))
         self._show(follow)
 
+    def notice(self, sentence: str, kind: Kind = "text") -> None:
+        """Append a sentence that only matters until Tangy asks the next question."""
+        self._notices.append(clean(sentence))
+        self.write(sentence, kind)
+
+    def clear_notices(self) -> None:
+        """Remove the notices."""
+        if self._notices:
+            kept = [line for line in self._lines if line[0] not in self._notices]
+            self._notices.clear()
+            self._lines.clear()
+            self._lines.extend(kept)
+            self._show(self._at_end)
+
     def clear(self) -> None:
         """Empty the log."""
+        self._notices.clear()
         self._lines.clear()
         self._show(True)
 
