@@ -129,7 +129,7 @@ def change_words(change: Event[EventRecord]) -> str:
             return "the method that was chosen"
 
 
-BELIEF_COLUMNS = "worked/asked, mean, P(best)"
+BELIEF_COLUMNS = "worked/asked, average, chance to be best"
 
 
 def what_works(world: str) -> str:
@@ -214,9 +214,9 @@ def strategies_title(name: str) -> str:
     return f"What works with {name}"
 
 
-COMPLIED = "Complied, of times tried (P(best))"
-P_BEST = "P(best): probability of being the best of those on. "
-STAR = "*: the most probable one."
+COMPLIED = "Did it, of times asked (chance to be best)"
+BEST = "Chance to be best: of the ways of asking that are on. "
+STAR = "*: the most likely one."
 SETTLED = "settled: at least 0.9."
 HISTORY = "History by game"
 NO_HISTORY = "There is no history yet."

@@ -61,6 +61,7 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 
 
 SET_UP = "in which Tangy set itself up for somebody new"
+GAME_TIME = "of game time (a simulated game runs faster)"
 MOST_NAMED = 5
 """The most people that one line of what to look after names, if there are more."""
 LEAST_LEFT = 3
@@ -80,7 +81,9 @@ def how_long_words(session: Session) -> str:
         f"{length(set_ups.seconds)} {SET_UP}" if set_ups.seconds >= 1 else "",
     ]
     words = listed(filter(None, part))
-    told = f"{length(session.seconds)}{f', of which {words}' if words else ''}"
+    simulated = all(replay.game.world == SIMULATED for replay in session.replays)
+    game_time = f" {GAME_TIME}" if simulated and session.replays else ""
+    told = f"{length(session.seconds)}{game_time}{f', of which {words}' if words else ''}"
     return f"{told}{_interrupted_words(breaks)}"
 
 

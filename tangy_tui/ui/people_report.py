@@ -12,10 +12,10 @@ from rich.text import Text
 from tangy_profiles.reading import plain
 from tangy_tui.interaction.record import PersonSummary
 from tangy_tui.text.people import (
+    BEST,
     COMPLIED,
     HISTORY,
     NO_HISTORY,
-    P_BEST,
     SETTLED,
     STAR,
     drift_lines,
@@ -48,7 +48,7 @@ def print_person(record: PersonSummary) -> None:
     console = Console(highlight=False)
     table = _table(
         f"{plain(record.person.name)} ({record.person.id}), in {record.world} games",
-        "strategy", "complied", "mean", "90% interval", "P(best)", "",
+        "way of asking", "did it", "average", "90% interval", "chance to be best", "",
     )  # fmt: skip
     for strategy, belief in record.beliefs.items():
         low, high = belief.interval()
@@ -99,7 +99,7 @@ def _mark(record: PersonSummary, strategy: str) -> str:
 
 
 def _print_legend(console: Console, mark: str) -> None:
-    console.print(Text(P_BEST + mark, style="dim"))
+    console.print(Text(BEST + mark, style="dim"))
 
 
 def _table(title: str, *columns: str) -> Table:

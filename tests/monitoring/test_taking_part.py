@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.game_records import GameChange, MoveKind
 from tangy_profiles.game_rules import GamePlan
+from tangy_profiles.game_world import LIVE
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.game_commands import ChoosePatterns, ComesIn, GoesAway
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
@@ -27,7 +28,7 @@ from tangy_tui.monitoring.session import Session, read_session
 from tangy_tui.monitoring.standstills import answer_waits, halts, halts_in, interruptions
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import session_lines
-from tangy_tui.text.report import care_lines, how_long_words
+from tangy_tui.text.report import GAME_TIME, care_lines, how_long_words
 from tangy_tui.text.session_page import CARE
 from tangy_tui.text.taking_part import played_for_rows, stay_words, took_part, with_stay
 from tangy_tui.text.times import length
@@ -229,6 +230,9 @@ def test_halts_and_interruptions_are_told_beside_the_pauses(
     session = session_of(workspace)
     plain = how_long_words(session)
     (replay,) = session.replays
+    assert GAME_TIME in plain
+    game = replace(replay.game, world=LIVE)
+    assert GAME_TIME not in how_long_words(replace(session, replays=(replace(replay, game=game),)))
     first = next(n for n, one in enumerate(replay.moments) if one.step == 3)
     before = datetime.fromisoformat(replay.moments[first - 1].at)
     resumed = replace(

@@ -209,7 +209,7 @@ async def test_the_question_names_behaviour_words_confidence_and_alternatives(ru
         text = pilot.text()
         assert "Did you say: call number?" in text
         assert "cal numbr" in text
-        assert "0.83" in text
+        assert "83% sure" in text
         assert "3 three" in text
         assert "four" not in text
 

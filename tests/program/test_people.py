@@ -100,8 +100,8 @@ def test_the_list_is_the_default_verb(people: Tangy) -> None:
 
 
 def test_the_columns_are_explained_below_the_tables(people: Tangy) -> None:
-    best = "P(best): probability of being the best of those on. "
-    assert f"\n{best}*: the most probable one.\nuser1: " in people("list").stdout
+    best = "Chance to be best: of the ways of asking that are on. "
+    assert f"\n{best}*: the most likely one.\nuser1: " in people("list").stdout
     assert f"\n{best}settled: at least 0.9.\npraise works " in people("show", "Rosa").stdout
 
 

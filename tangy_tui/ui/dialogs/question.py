@@ -38,7 +38,7 @@ MOST_ALTERNATIVES = 3
 LONGEST_HEARD = 100  # characters: two lines
 LONGEST_TOLD = 150  # characters: three lines
 HEARD, TYPED = "heard", "typed"
-CONFIDENCE = "confidence"
+SURE = "sure"
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +198,7 @@ class VerifyingDialog(Dialog[Answer]):
             told = TYPED if self.typed else HEARD
             grounds.append([(f"{told} ", "$ink-dim"), self._heard])
         if self._confidence is not None:
-            grounds.append([(f"{CONFIDENCE} ", "$ink-dim"), f"{self._confidence:.2f}"])
+            grounds.append([f"{self._confidence:.0%}", (f" {SURE}", "$ink-dim")])
         parts: Parts = []
         for ground in grounds:
             parts += ["   " if parts else "\n", *ground]
