@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 from tangy_tui.app.inquiry_grammar import Inquiry
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.text.coach import coach_words
+from tangy_tui.text.coach import coach_words, with_examples
 from tangy_tui.text.learnt import NOT_SHOWN
 from tangy_tui.text.situations import state_words
+from tangy_tui.text.teaching import now_words
 from tangy_tui.text.teaching_commands import HELP, MEANINGS
 
 
@@ -47,8 +48,9 @@ class TeachingInquiries:
         teaching = self._teaching
         state, scene = teaching.world.observe(), teaching.world.scene()
         activity, name = teaching.activity, teaching.name
-        words = coach_words(activity, state, scene, name)
+        said = coach_words(activity, state, scene, name)
+        words = with_examples(said, activity, state, teaching.sayable)
         if fully:
             words = f"{activity.in_words(state.situation)}. "
             words += state_words(activity, state, scene, name)
-        return f"Now: {words}"
+        return now_words(words)

@@ -29,6 +29,8 @@ ASKED = "What should Tangy do?"
 """The coach's question if an activity's file gives no advice in a situation."""
 
 SAYABLE = "You can say now"
+EXAMPLES = "For example: {}."
+MOST_EXAMPLES, FEWEST_EXAMPLES = 3, 2
 
 
 def sayable_now(commands: Sequence[str]) -> str:
@@ -40,6 +42,29 @@ def coach_words(activity: Activity, state: ActivityState, scene: Scene, name: Na
     """Describe the situation, suggest what a host might do, and add the relevant facts."""
     facts = _facts(activity, state, scene, name)
     return " ".join([host_sentence(activity, state, name), *facts])
+
+
+def with_examples(
+    said: str, activity: Activity, state: ActivityState, sayable: Sequence[str], room: int = 1_000
+) -> str:
+    """Add examples of what to type to the coach's words, unless they name what to type.
+
+    The order of the examples does not tell which one is right.
+
+    Args:
+        said: the coach's words.
+        activity: the activity taught.
+        state: the present state.
+        sayable: what can be said now, what is due first.
+        room: the most characters; fewer examples are given if they do not fit, or none.
+    """
+    if isinstance(activity, DeclaredActivity) and activity.expectation(state.situation):
+        return said
+    for count in range(MOST_EXAMPLES, FEWEST_EXAMPLES - 1, -1):
+        words = f"{said} {EXAMPLES.format(' · '.join(sorted(sayable[:count])))}"
+        if len(sayable) >= count and len(words) <= room:
+            return words
+    return said
 
 
 def host_sentence(activity: Activity, state: ActivityState, name: Name) -> str:

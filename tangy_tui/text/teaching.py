@@ -67,12 +67,16 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "
             return [complete_words(teaching)]
 
 
+def now_words(words: str) -> str:
+    """Begin the line that tells what is going on."""
+    return f"Now: {words}"
+
+
 CHOOSE_STEP, CANCEL = "Choose a step", "Cancel"
 LEAVE = "Leave; your steps are kept"
 """Actions of keys while teaching."""
 
 NO_STEPS = "No steps yet."
-
 TYPE_HERE = "type a command (its first letters are enough), or ? for help"
 SAY_OR_TYPE = "Say or type"
 STOPPED = "STOP: the simulated robot stands still."

@@ -32,7 +32,7 @@ from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.monitoring.attention import goes_to_people
 from tangy_tui.text import teaching as text
 from tangy_tui.text.activities import with_activity
-from tangy_tui.text.coach import arranged_words, coach_words, unseen_words
+from tangy_tui.text.coach import arranged_words, coach_words, unseen_words, with_examples
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.remarks import remark_words, settled_words
 from tangy_tui.text.situations import step_words
@@ -82,6 +82,7 @@ class ShownSoFar:
 
 
 WRAPPING = 14  # characters that wrapping may waste on two lines
+NOW_LINES = 2  # of what is going on
 DRIVING_PACE = 4.0
 """The speed-up of the robot's animation, so that nobody waits for it."""
 
@@ -234,14 +235,17 @@ class TeachingPicture:
 
     def _coach(self, state: ActivityState) -> str:
         teaching = self._teaching
-        return coach_words(teaching.activity, state, teaching.world.scene(), teaching.name)
+        activity, wide = teaching.activity, self._screen.size.width - 2
+        said = coach_words(activity, state, teaching.world.scene(), teaching.name)
+        room = NOW_LINES * wide - WRAPPING * (NOW_LINES - 1) - len(text.now_words(""))
+        return with_examples(said, activity, state, teaching.sayable, room)
 
     def _now(self, words: str) -> None:
         """Show the coach's line; during the tour, the tour's line."""
         at = None if self.tour is None else self.tour.at
         now = self._screen.query_one("#now", Static)
         now.set_class(at is not None, "-tour")
-        now.update(f"Now: {words}" if at is None else self._tour_words(at))
+        now.update(text.now_words(words) if at is None else self._tour_words(at))
         if self.tour is not None:
             keys = self._keys() if at is None else TOUR_KEYS
             goes_on = (TOUR_GOES_ON,) if self.tour.enter_goes_on else ()
