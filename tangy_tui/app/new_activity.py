@@ -48,7 +48,6 @@ MOST_ROUNDS: Mapping[str, int] = {QUIZ: 6, SONGS: 4, EXERCISES: 6, MEMORY: 5}
 """Rounds of a game unless the author says otherwise, and kinds that have them."""
 RANGES: Mapping[str, tuple[int, int]] = {WIN_AT: (1, 20), NUMBERS: (40, 75)}
 YES_OR_NO = (POINTS, MEDIA, TURNS)
-IN_ROWS = tuple(dict.fromkeys(one for fields in ROWS.values() for one in fields))
 CARD_ROWS = ("top", "middle", "bottom")
 MOST_WRONG, MOST_TEAMS = 5, 6
 LONGEST, LONGEST_TITLE = 200, 60
