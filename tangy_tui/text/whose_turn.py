@@ -6,21 +6,25 @@ from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, assert_never
 
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.whose_turn import present_moment, turn_of
 from tangy_tui.text.control import claimed_words, noted_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.situations import moment_words
 from tangy_tui.text.staff_view import OVER, STEP_SECONDS, lasting_words, next_words, welcomes_words
 from tangy_tui.text.times import local_now
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
+    from tangy_profiles.state import ActivityState
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.inquiry_grammar import AsksAbout
     from tangy_tui.app.staff_view import PersonNow
     from tangy_tui.app.whose_turn import GameMoment, PersonTurn
+    from tangy_tui.learning.policy import Decision
 
     Name = Callable[[str], str]
 
@@ -29,6 +33,8 @@ IN_DETAIL = "How Tangy decides"
 """The heading of the details for researchers, below the plain sentences."""
 WHOSE_TURN = "When does Tangy go there?"
 """The title of the answer about people."""
+FACTS_FOLLOW = " \N{MIDDLE DOT} "
+"""What stands between a stage and its facts in the words of a situation."""
 MOST_NAMES = 3
 """The most names in a sentence; the others are counted."""
 
@@ -122,7 +128,9 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
     behaviour = activity.behaviours.get(decision.behaviour)
     if not decision.sure or behaviour is None:
         return "Nobody has shown Tangy what to do next, so it will ask you.", ""
-    following = next_words(activity, decision, state, name)
+    following = _next_words(activity, decision, state, name)
+    if moment.turns:
+        return f"It is {name(moment.turns[0])}'s turn. {following}", ""
     if near is not None and near.turn and not behaviour.visits:
         there = f"Tangy is with {name(near.id)}{_because(moment, near, name)}."
         return f"{there} {following}", near.id
@@ -143,6 +151,15 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
         called = "Tangy calls the next number, because nobody asks for help."
         return called + (looks if moment.rests else ""), ""
     return following, (state.attended or "") if behaviour.attends else ""
+
+
+def _next_words(activity: Activity, decision: Decision, state: ActivityState, name: Name) -> str:
+    """Tell the next step and why; of a game declared by facts, without the facts in detail."""
+    if not isinstance(activity, DeclaredActivity):
+        return next_words(activity, decision, state, name)
+    why = moment_words(activity, state, name).partition(FACTS_FOLLOW)[0]
+    done = activity.behaviour_words(decision.behaviour)
+    return f"{why[:1].upper()}{why[1:]}. Next: {done}." if why else f"Next: {done}."
 
 
 def _on_its_way(moment: GameMoment) -> str:
@@ -205,7 +222,8 @@ def turn_lines(turn: PersonTurn, name: Name, now: datetime | None) -> list[str]:
         ]
     told = [held_words(moment), _claim_words(moment, name)]
     if not person.goes_round:
-        return [*filter(None, told), _turn_words(turn, name)]
+        asked = _asked_words(person, moment, name) if person.turn else ""
+        return [*filter(None, [*told, asked]), _turn_words(turn, name)]
     match person.state:
         case "visited":
             told.append(f"Tangy is with {who} now{_because(moment, person, name)}.")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.health import ERROR, Reading
@@ -34,8 +35,10 @@ from tangy_tui.app.whose_turn import (
 )
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.learning.policy import Decision
 from tangy_tui.text import whose_turn as text
 from tangy_tui.text.control import noted_words
+from tangy_tui.text.situations import moment_words
 from tangy_tui.text.times import local_now
 from tests.app.test_interruption import Robot
 from tests.app.test_planned_games import Planned
@@ -350,7 +353,23 @@ def test_in_a_game_with_turns_the_order_of_turns_is_told() -> None:
     ]
     turn = PersonTurn(ben, GameMoment(turns=("ann", "ben")))
     assert text.turn_lines(turn, str.title, None) == ["It is Ann's turn now. Then comes Ben."]
+    waits = PersonTurn(replace(ben, turn=1, waits=42.0), GameMoment(turns=("ann", "ben")))
+    assert text.turn_lines(waits, str.title, None)[0] == "Ben asked 40 s ago."
     turn = PersonTurn(ben, GameMoment())
     assert text.turn_lines(turn, str.title, None) == [
         "In this activity Tangy goes to nobody, and nobody has a turn."
     ]
+
+
+def test_in_a_game_by_facts_the_step_is_told_without_all_facts() -> None:
+    game = Game()
+    welcome = next(iter(game.activity.behaviours))
+    game.game.execute(welcome, None)
+    game.game.execute("ask question", "ann")
+    state = joint_state(game.game)
+    decision = Decision("allow time", 1.0, (("allow time", 1.0),), seen=3)
+    moment = GameMoment(turns=("ann", "ben"), state=state, decision=decision)
+    (told,) = text.now_lines(game.activity, moment, str.title)
+    assert told.startswith("It is Ann's turn. ") and told.endswith(". Next: allow time.")
+    assert "\N{MIDDLE DOT}" in moment_words(game.activity, state, str.title)
+    assert "\N{MIDDLE DOT}" not in told
