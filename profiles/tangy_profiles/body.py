@@ -63,33 +63,35 @@ def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
     entry, usual = top.table("body"), BodyProfile()
     corners = _corners(entry)
     if corners:
+        if "radius" in entry:
+            raise entry.wrong("radius", "is too much beside corners: remove one of the two.")
         radius = max(hypot(x, y) for x, y in corners)
     else:
-        radius = entry.number("radius", 0.05, LARGEST, usual.radius)
+        radius = entry.number("radius", 0.05, LARGEST, usual.radius, unit="m")
     seen = entry.table("cameras", optional=True)
     known = tuple(cameras)
     body = BodyProfile(
         radius,
         corners,
-        entry.number("turn", 0.1, FASTEST_TURN, usual.turn),
-        entry.number("acceleration", 0.05, HARDEST, usual.acceleration),
-        entry.number("braking", 0.2, HARDEST, usual.braking),
+        entry.number("turn", 0.1, FASTEST_TURN, usual.turn, unit="rad/s"),
+        entry.number("acceleration", 0.05, HARDEST, usual.acceleration, unit="m/s²"),
+        entry.number("braking", 0.2, HARDEST, usual.braking, unit="m/s²"),
         _mount(entry.table("laser", optional=True)),
         MappingProxyType({name: _mount(seen.table(name)) for name in seen if name in known}),
-        entry.number("arms", 0.0, LARGEST, usual.arms),
+        entry.number("arms", 0.0, LARGEST, usual.arms, unit="m"),
     )
     seen.close(also=known)
-    entry.close(also=("radius",) if not corners else ())
+    entry.close(also=() if corners else ("radius", "corners"))
     return body
 
 
 def _mount(entry: Table) -> Mount:
     mount = Mount(
-        entry.number("x", -LARGEST, LARGEST, 0.0),
-        entry.number("y", -LARGEST, LARGEST, 0.0),
-        entry.number("height", 0.0, HIGHEST, 0.0),
-        entry.number("yaw", -180.0, 180.0, 0.0),
-        entry.number("range", 0.0, 1000.0, 0.0),
+        entry.number("x", -LARGEST, LARGEST, 0.0, unit="m"),
+        entry.number("y", -LARGEST, LARGEST, 0.0, unit="m"),
+        entry.number("height", 0.0, HIGHEST, 0.0, unit="m"),
+        entry.number("yaw", -180.0, 180.0, 0.0, unit="degrees"),
+        entry.number("range", 0.0, 1000.0, 0.0, unit="m"),
     )
     entry.close()
     return mount
@@ -107,7 +109,9 @@ def _corners(entry: Table) -> tuple[tuple[float, float], ...]:
     after, next_but_one = corners[1:] + corners[:1], corners[2:] + corners[:2]
     turns = {_left_of(*three) for three in zip(corners, after, next_but_one, strict=True)}
     if len(turns) != 1 or 0 in turns:
-        raise entry.wrong("corners", "must go once round a shape without a dent.")
+        raise entry.wrong(
+            "corners", "must go once round a shape without a dent, each corner beside the last."
+        )
     side = turns.pop()
     if any(_left_of(a, b, (0.0, 0.0)) != side for a, b in zip(corners, after, strict=True)):
         raise entry.wrong("corners", "must go round 0, 0, the middle between the wheels.")

@@ -31,6 +31,8 @@ _MET = {
     "unclosed array": "a comma or ] is missing before this",
     "unclosed inline table": "a comma or } is missing before this",
     "expected '=' after a key in a key/value pair": "after a key = is missing",
+    "expected newline or end of document after a statement": "something else follows this value; a"
+    " decimal number has a point, as in 0.5",
 }
 """What the TOML parser says of the commonest mistakes (in any case), in words for authors."""
 
@@ -172,11 +174,15 @@ class Table:
         low: float = -math.inf,
         high: float = math.inf,
         default: float | None = None,
+        *,
+        unit: str = "",
     ) -> float:
-        """Read a finite number within [low, high]."""
+        """Read a finite number within [low, high]; an error names its `unit`."""
         value = self._take(key, (int, float), "a number", default)
         if not low <= value <= high or value in (math.inf, -math.inf):  # also rejects NaN
-            raise self.wrong(key, f"must be a number from {low:g} to {high:g}.")
+            raise self.wrong(
+                key, f"must be a number from {low:g} to {high:g}{unit and f' {unit}'}."
+            )
         return float(value)
 
     def word_or_number(self, key: str) -> str | float | bool:

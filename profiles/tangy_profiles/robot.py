@@ -39,6 +39,10 @@ GAZES = ("card", "face")
 """Targets of the robot's gaze."""
 
 
+OPTIONAL = ("body", "drivers", "expert", "faces", "gaze", "limbs", "liveness", "postures", "staff")
+"""The tables that a robot's file may have."""
+
+
 @dataclass(frozen=True)
 class Limb:
     """A chain of joints that is posed together: joint names and limits in degrees."""
@@ -146,13 +150,13 @@ class Robot:
     undriven: tuple[DeviceProfile, ...] = ()
 
     def check(self, activity: Activity) -> None:
-        """Check that the robot has every posture of an activity.
+        """Check that the robot has every posture of an activity; without limbs it needs none.
 
         Raises:
             ProfileError: names the behaviour and the nearest posture.
         """
         for behaviour in activity.behaviours.values():
-            if behaviour.posture not in self.postures:
+            if self.limbs and behaviour.posture not in self.postures:
                 raise ProfileError(
                     f"{activity.source}: behaviours[{behaviour.name}].posture = "
                     f"{behaviour.posture!r}: {self.title} has no such posture; "
@@ -200,7 +204,7 @@ def read_robot(top: Table, path: Path) -> Robot:
         limbs[name_of_limb] = Limb(name_of_limb, joints, low, high)
         entry.close()
     postures: dict[str, Mapping[str, tuple[float, ...]]] = {}
-    for posture, entry in top.table("postures").items():
+    for posture, entry in top.table("postures", optional=not limbs).items():
         angles: dict[str, tuple[float, ...]] = {}
         for limb in limbs.values():
             angles[limb.name] = entry.numbers(limb.name, len(limb.joints), -360, 360)
@@ -218,7 +222,7 @@ def read_robot(top: Table, path: Path) -> Robot:
     robot = Robot(
         top.text("name"),
         top.text("title"),
-        top.number("speed", 0.05, 3),
+        top.number("speed", 0.05, 3, unit="m/s"),
         MappingProxyType(limbs),
         MappingProxyType(postures),
         MappingProxyType(devices),
@@ -231,7 +235,7 @@ def read_robot(top: Table, path: Path) -> Robot:
         read_contact(top, STAFF_ROLE),
         read_body(top, (name for name in devices if "camera" in name)),
     )
-    top.close()
+    top.close(also=OPTIONAL)
     return robot
 
 
@@ -252,7 +256,7 @@ def _devices(top: Table, liveness: Liveness) -> dict[str, DeviceProfile]:
         if name in devices:
             raise entry.wrong("name", "was used before: every device has its own.")
         facts = entry.table("facts", optional=True)
-        stale_after = entry.number("stale_after", 0.05, 60)
+        stale_after = entry.number("stale_after", 0.05, 60, unit="s")
         devices[name] = DeviceProfile(
             name,
             entry.text("label"),

@@ -10,6 +10,7 @@ from tangy_profiles.body import BodyProfile, Mount
 FINEST, ROWS = 0.05, 16  # smallest height of a row in m, and most rows of a body
 EDGE, INSIDE, WHEELS = "#", "·", "+"
 LASER, CAMERA = "L", "C"
+LASER_NAME = "laser scanner"
 NEAR = 1e-9  # tolerance of the edge in m^2
 
 
@@ -71,6 +72,10 @@ def _words(body: BodyProfile) -> list[str]:
         f"{WHEELS} the middle between its wheels; {LASER} the laser scanner, {_place(body.laser)}.",
     ]
     lines += [f"{CAMERA} {name}, {_place(mount)}." for name, mount in body.cameras.items()]
+    outside = [LASER_NAME] * (not _within(body, body.laser.x, body.laser.y)) + [
+        name for name, mount in body.cameras.items() if not _within(body, mount.x, mount.y)
+    ]
+    lines += [f"The {name} is outside the body: check where it is, in m." for name in outside]
     if body.arms:
         lines.append(f"Its arms reach {body.arms:.2f} m out from the middle.")
     lines.append(f"It brakes at {body.braking:.1f} m/s²: measure that with nobody near.")

@@ -45,7 +45,7 @@ def drive_is_there(record: str, yaml: str) -> str:
 
 def recorded_words(scans: int, metres: float) -> str:
     """Tell how much of a drive (in metres) is recorded."""
-    return f"{scans} scans recorded, {metres:.1f} m driven"
+    return f"{scans} {'scan' if scans == 1 else 'scans'} recorded, {metres:.1f} m driven"
 
 
 def kept_words(log: str) -> str:

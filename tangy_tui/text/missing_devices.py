@@ -13,7 +13,7 @@ NO_BUTTON = (
     "Tangy does not notice whether this robot's emergency stop is pressed. If you press it, stop "
     "the game here as well."
 )
-NO_REQUESTS = "This robot does not see who asks for help: tell Tangy who does."
+NO_REQUESTS = "This robot does not see who asks for help: type it, as in ask for Rosa."
 NO_ARMS = "This robot has no arms: Tangy makes no gestures."
 
 

@@ -86,3 +86,13 @@ def test_a_driver_that_raises_when_it_is_opened_is_named(monkeypatch: pytest.Mon
         DeviceError, match=r"drivers\.laser \(mine\): .*ValueError: no such port\.$"
     ):
         open_device(wiring, "laser", {"kind": "mine"})
+
+
+def test_a_kind_that_nobody_knows_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    wiring = Wiring(load_robot("tangy"), load_activity("bingo"), MachineClock())
+    with pytest.raises(
+        DeviceError, match=r"no driver 'xyzzy' .is its package installed.*; choose one of"
+    ):
+        open_device(wiring, "laser", {"kind": "xyzzy"})
+    with pytest.raises(DeviceError, match="'page' drives no laser; choose one of"):
+        open_device(wiring, "laser", {"kind": "page"})

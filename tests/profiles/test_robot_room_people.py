@@ -67,7 +67,17 @@ def test_an_unknown_posture_is_refused_with_a_suggestion(activity: Activity) -> 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("speed = 0.5", "speed = 50", ("speed = 50", "0.05 to 3")),
+        ("speed = 0.5", "speed = 50", ("speed = 50", "0.05 to 3 m/s")),
+        ("speed = 0.5", "speed = 0,5", ("has a point, as in 0.5",)),
+        ("speed = 0.5", "speed = 0.5\n[bodi]\n[more]", ("did you mean 'body'?",)),
+        (
+            "[gaze]",
+            "[body]\nradius = 0.3\ncorners = [1, 1, -1, 1, -1, -1, 1, -1]\n[gaze]",
+            ("body.radius", "remove one of the two"),
+        ),
+        ("[gaze]", "[body]\nlength = 0.7\n[gaze]", ("body.length", "corners")),
+        ("[gaze]", "[body]\nturn = 45\n[gaze]", ("body.turn", "rad/s")),
+        ("[gaze]", "[body]\nlaser.x = 20\n[gaze]", ("body.laser.x", "-2 to 2 m.")),
         ("speed = 0.5", "sped = 0.5", ("speed", "missing")),
         ("low = [-60,", "low = [-60, 1,", ("limbs[left_arm].low", "list of 6 numbers")),
         ("low = [-60,", "low = [nan,", ("limbs[left_arm].low", "list of 6 numbers")),
@@ -85,6 +95,15 @@ def test_a_mistake_in_a_body_is_one_line(
         load_robot(str(changed(tmp_path, ROBOT, old, new)))
     for words in ("mine.toml: ", *said):
         assert words in str(caught.value)
+
+
+def test_a_robot_without_limbs_needs_no_postures(tmp_path: Path, activity: Activity) -> None:
+    text = load_robot("turtlebot4").file.read_text(encoding="utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(text[: text.index("[postures.rest]")], encoding="utf-8")
+    robot = load_robot(str(path))
+    robot.check(activity)
+    assert not robot.postures
 
 
 def test_every_robot_has_a_link_with_a_fact_for_freezes(tmp_path: Path) -> None:

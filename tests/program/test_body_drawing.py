@@ -45,3 +45,10 @@ def test_a_robot_wider_than_long_is_drawn_wide() -> None:
     wide = BodyProfile(radius=0.5, corners=((0.2, 0.4), (-0.2, 0.4), (-0.2, -0.4), (0.2, -0.4)))
     rows = drawn(wide)
     assert max(len(row.strip()) for row in rows) > 3 * len(rows)
+
+
+@pytest.mark.parametrize(("x", "outside"), [(0.25, False), (0.45, True), (-0.45, True)])
+def test_a_scanner_outside_the_body_is_told(x: float, outside: bool) -> None:
+    body = BodyProfile(radius=0.5, corners=CORNERS, laser=Mount(x, 0.0))
+    told = "The laser scanner is outside the body: check where it is, in m."
+    assert (told in draw_body(body)) is outside

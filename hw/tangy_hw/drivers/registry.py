@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose, members_of
 from tangy_hw.drivers.ros_status import RosDiagnostics
@@ -106,6 +106,8 @@ class Wiring:
     clock: Clock
     links: dict[str, Rosbridge] = field(default_factory=dict)
     diagnosing: dict[str, RosDiagnostics] = field(default_factory=dict)
+    shared: dict[str, Any] = field(default_factory=dict)
+    """What drivers of other packages share, such as a connection of base and battery, by name."""
     pairing: Mapping[str, str] = field(default_factory=dict)
     """Contents of the file of paired tablets (see `chest_pairing`); empty: a temporary pairing."""
 
@@ -337,9 +339,11 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
             raise DeviceError(f"drivers.{device}: {error}") from None
     if kind not in drivers or device not in drivers[kind].devices:
         known = {name for name, driver in known_drivers().items() if device in driver.devices}
-        raise DeviceError(
-            plain(f"drivers.{device}: {kind!r} drives no {device}; {nearest(kind, known)}")
-        )
+        meant = nearest(kind, known)
+        if kind in known_drivers() or "did you mean" in meant:
+            raise DeviceError(plain(f"drivers.{device}: {kind!r} drives no {device}; {meant}"))
+        which = f"there is no driver {kind!r} (is its package installed beside Tangy?); {meant}"
+        raise DeviceError(plain(f"drivers.{device}: {which}"))
     settings = DriverSettings(device, kind, {k: v for k, v in values.items() if k != "kind"})
     try:
         opened = drivers[kind].opens(wiring, settings)

@@ -258,7 +258,7 @@ class DeclaredLiveWorld(LiveWorld):
         self.say(
             with_names(speech, self.name_of),
             chest_picture(after, behaviour.name, whom, image, self.seat_of),
-            self._robot.postures[action.posture],
+            self._robot.postures.get(action.posture, {}),
             with_names(speech, self.seat_of),
             heard.path if heard else "",
         )

@@ -257,7 +257,7 @@ class LiveWorld(LivePlan):
         speech, written = (
             fill(action.speech, called, numbers, aloud=True) for called in (name, seat)
         )
-        self.say(speech, picture, self._robot.postures[action.posture], written)
+        self.say(speech, picture, self._robot.postures.get(action.posture, {}), written)
 
     def name_of(self, person: str | None) -> str:
         """Return the name of the person who sits at a seat, "" for nobody."""
