@@ -50,6 +50,8 @@ class ClaimNow:
     """How many numbers were called by then."""
     game: str = ""
     """The id of the game."""
+    goes: bool = False
+    """Whether Tangy goes to the person because of it."""
 
 
 class GamePlanControls:
@@ -155,7 +157,10 @@ class GamePlanControls:
 
     @property
     def claim(self) -> ClaimNow | None:
-        """The last claim, while it is news: until the next call, and for a while; or None."""
+        """The last claim, while it is news; or None.
+
+        It is news until the next call, and for a while; a winning one at most until the visit.
+        """
         claimed, world = self._claimed, self.world
         if claimed is None or world is None or self._idle:
             return None
@@ -164,7 +169,9 @@ class GamePlanControls:
         ago, calls = world.seconds - claimed.told, len(world.called_now)
         over = ago >= LONGEST_CLAIM or (ago >= CLAIM_SECONDS and calls > claimed.calls)
         before = claimed.game != self._supervision.game.game
-        return None if over or before else claimed
+        there = world.tracker.place == claimed.person and world.arrived
+        visited = claimed.goes and (there or claimed.person not in world.vouched)
+        return None if over or before or visited else claimed
 
     @staticmethod
     def _verdict(world: PlannedGame, card: int, holder: str) -> ClaimKind:
@@ -296,6 +303,7 @@ class GamePlanControls:
             return told
         if holder:
             told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
+            self._claimed = replace(self._claimed, goes=True)
         else:
             told.append(StaffNote("whose card", str(card)))
         return told

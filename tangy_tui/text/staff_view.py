@@ -148,6 +148,11 @@ def next_words(
     return f"Next: {step}{because}.{calls}"
 
 
+def goes_by_claim_words(name: str) -> str:
+    """Tell that Tangy goes to the person whose card wins by a claim."""
+    return f"Next: go to {name} ({CLAIM_FIRST})."
+
+
 def plays_on_words(pattern: str) -> str:
     """Tell that the game goes on for the next pattern after a win."""
     return f"Somebody has won. Next: the game goes on for {pattern}."

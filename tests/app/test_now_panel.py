@@ -90,6 +90,25 @@ def test_who_comes_first_by_a_claim_is_told_so(robot: Robot) -> None:
     assert next_of(robot) == f"Next: go to {name} (first because of the claim)."
 
 
+def test_a_claim_that_wins_is_news_until_tangy_is_there(robot: Robot) -> None:
+    robot.next(2)
+    world, plan, name = robot.world, robot.control.plan, robot.workspace.name("user3")
+    numbers = world.numbers_on(17)
+    assert numbers is not None
+    world.called.extend(numbers)
+    shown = ViewSource(world, robot.control, 0, robot.workspace.name)
+    goes = f"Next: go to {name} (first because of the claim)."
+    world.tracker.calls_first = 1  # others come later
+    plan.say_early(ClaimCard(17, "user3"))  # while Tangy carries out its step
+    assert news_line(shown).startswith(f"Card 17 ({name}) wins. Tangy finishes this")
+    assert next_of(robot) == goes
+    robot.control.apply(ClaimCard(17, "user3"))
+    assert news_line(shown) == f"Card 17 ({name}) wins. Tangy goes there next."
+    assert next_of(robot) == goes
+    robot.next(1)
+    assert world.tracker.place == "user3" and news_line(shown) == ""
+
+
 def test_the_reason_stands_before_the_visit() -> None:
     waits = PersonNow("ann", "asks", 1, waits=14.0, unvisited=24.0)
     assert (

@@ -83,8 +83,10 @@ def next_line(shown: ViewSource) -> str:
     planned = as_planned(world)
     found = next_step(world, control.supervision.policy)
     calls_first = 0 if planned is None else planned.tracker.calls_first
-    words = ""
-    if planned is not None and planned.tracker.finished and planned.patterns.left:
+    words, claimed = "", control.plan.claim
+    if claimed is not None and claimed.kind == "claim right" and claimed.person:
+        words = text.goes_by_claim_words(shown.name(claimed.person))
+    elif planned is not None and planned.tracker.finished and planned.patterns.left:
         words = text.plays_on_words(planned.patterns.left[0].label)
     elif planned is not None and planned.looking:
         words = text.looks_words(shown.name(planned.looking), world.activity.object)
