@@ -8,7 +8,7 @@ from datetime import datetime
 from functools import cached_property
 from pathlib import Path
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
@@ -50,6 +50,13 @@ def data_folder(chosen: Path | None) -> Path:
     from platformdirs import user_data_path
 
     return chosen or user_data_path("tangy", appauthor=False)
+
+
+class CallOptions(TypedDict):
+    """Options of a command line that opens an activity and a data folder; "" if it needs none."""
+
+    activity: str
+    data: str
 
 
 class Workspace(Participants):
@@ -127,6 +134,15 @@ class Workspace(Participants):
         """Go back to the people who take part now, and to the room chosen before the game."""
         self.chosen_room = room
         self.register(self._users)
+
+    @property
+    def call_options(self) -> CallOptions:
+        """The options of a command that opens this activity and folder: those it cannot omit."""
+        folder = self.store.folder
+        return {
+            "activity": "" if self.profile == chosen_activity(folder) else self.profile,
+            "data": "" if folder == data_folder(None).absolute() else str(folder),
+        }
 
     @property
     def teacher(self) -> str:

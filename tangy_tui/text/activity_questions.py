@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 
 from tangy_tui.app import new_activity as new
@@ -193,15 +194,16 @@ def _said(base: str, text: str | None) -> str:
     return text or ""
 
 
-def written_lines(toml: str, table: str, *, cards: bool = False) -> list[str]:
-    """Tell which files were written, and what to do next."""
+def written_lines(toml: str, table: str, *, cards: bool = False, options: str = "") -> list[str]:
+    """Tell which files were written, and what to do next with the options of the call."""
+    name = shlex.quote(toml)
     also = f" and {table}" if table else ""
-    tried = [] if cards else [f"  tangy activity try {toml}"]
+    tried = [] if cards else [f"  tangy activity try {name}"]
     return [
         f"Written: {toml}{also}. Next:",
         *tried,
-        f"  tangy teach --guided --activity {toml}",
-        f"  tangy learn --activity {toml}",
-        f"  tangy play --activity {toml}",
-        f"Change what you like in the files, then: tangy activity check {toml}",
+        f"  tangy teach --guided --activity {name}{options}",
+        f"  tangy learn --activity {name}{options}",
+        f"  tangy play --activity {name}{options}",
+        f"Change what you like in the files, then: tangy activity check {name}",
     ]

@@ -57,10 +57,25 @@ def keys_words(then: str) -> str:
 WHICH_IS_RIGHT = "Which is right? Type a number, b for all of them, or Enter to leave it open."
 LEFT_OPEN = "Left open. Tangy will ask when it happens."
 SETTLE_ONE = "Settle one with `tangy demonstrations resolve 1 --right BEHAVIOUR`, or --both."
-ALL_AGREE = "The demonstrations agree in every situation."
 UNDO_TAKES_BACK = "`tangy demonstrations undo` takes it back."
 FAULT_AGAIN = "Taken back. It counts as a fault again."
 NOTHING_ACCEPTED = "Staff have accepted nothing unexpected as all right."
+
+
+def all_agree(title: str) -> str:
+    """Tell that the demonstrations of an activity, given by title, have no conflicts."""
+    return f"{title}: the demonstrations agree in every situation."
+
+
+def conflicts_left(count: int) -> str:
+    """Tell how many conflicts are open, and what comes next."""
+    if not count:
+        return "No conflict is left. Now learn again with `tangy learn`."
+    left = counted(count, "conflict is", "conflicts are")
+    return (
+        f"{left} left: `tangy demonstrations conflicts` shows the steps. Then learn again with "
+        "`tangy learn`."
+    )
 
 
 def how_to_settle(answers: int) -> str:

@@ -304,4 +304,4 @@ def _sums(games: Sequence[Game]) -> str:
     return ", ".join(parts)
 
 
-HOW_TO_GO_ON = "tangy log show 1: a game step by step. tangy report session 1: its report."
+HOW_TO_GO_ON = "`tangy log show 1`: a game step by step. `tangy report session 1`: its report."

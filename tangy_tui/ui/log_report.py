@@ -14,6 +14,7 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import Game
 from tangy_tui.text.endings import ending_words
+from tangy_tui.text.follow_up import follow_up
 from tangy_tui.text.games import NONE_YET
 from tangy_tui.text.log import HOW_TO_GO_ON
 from tangy_tui.text.times import local_time
@@ -26,11 +27,14 @@ FOLDED = ("activity", "policy")
 """Columns with users' own names; the others fit 80 columns, even with numbers of five digits."""
 
 
-def print_games(games: Sequence[Game]) -> None:
-    """Print the games of a log, the newest last, and below the reasons why some stopped early."""
+def print_games(games: Sequence[Game], data: str) -> None:
+    """Print the games of a log, the newest last, and below the reasons why some stopped early.
+
+    `data` is the folder for the commands that follow, "" for the usual one.
+    """
     console = Console(highlight=False)
     if not games:
-        console.print(NONE_YET)
+        console.print(Text(follow_up(NONE_YET, data=data)), soft_wrap=True)
         return
     table = Table(
         title=Text("Games"), box=box.SIMPLE_HEAD, title_justify="left", padding=0, show_edge=False
@@ -57,7 +61,7 @@ def print_games(games: Sequence[Game]) -> None:
     for game in games:
         if game.ended is None or game.stopped is not None or game.due:
             console.print(Text(plain(f"Game {game.number}: {ending_words(game)}")))
-    console.print(Text(HOW_TO_GO_ON))
+    console.print(Text(follow_up(HOW_TO_GO_ON, data=data)), soft_wrap=True)
 
 
 def _ended(game: Game) -> Text:

@@ -27,7 +27,6 @@ from tangy_tui.learning.library_entries import Library
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.activities import whom_words
 from tangy_tui.text.activity_search import proof_words
-from tangy_tui.text.demonstrations import NONE_YET
 from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.people import COMPLIED
@@ -153,11 +152,11 @@ def print_policies(kept: Sequence[PolicyLearnt]) -> None:
     Console(highlight=False).print(table)
 
 
-def print_demonstrations(rows: Sequence[ListRow]) -> None:
-    """Print the demonstrations, one row each, with their notes."""
+def print_demonstrations(rows: Sequence[ListRow], none: str) -> None:
+    """Print the demonstrations, one row each, with their notes; if there are none, tell so."""
     console = Console(highlight=False)
     if not rows:
-        console.print(NONE_YET)
+        console.print(Text(none), soft_wrap=True)
         return
     table = _table("Demonstrations", "", "teacher", "date", "steps", "shown", "state", "notes")
     for row in rows:

@@ -43,13 +43,13 @@ SHOWN = 4  # people with whom phrases are tried: most behaviours can be aimed at
 def activities(context: typer.Context, as_json: Json = False) -> None:
     """List the activities, where no verb is given."""
     if context.invoked_subcommand is None:
-        activity_list(as_json)
+        activity_list(as_json=as_json)
     else:
         hand_on_options(context)
 
 
 @app.command("list")
-def activity_list(as_json: Json = False) -> None:
+def activity_list(data: Data = None, as_json: Json = False) -> None:
     """List the activities of Tangy and of other packages."""
     from tangy_profiles.activity import known_activities, load_activity, shipped_activities
     from tangy_profiles.errors import ProfileError
@@ -79,6 +79,7 @@ def activity_check(
     faults: Annotated[
         list[Path] | None, typer.Option("--faults", metavar="FILE", help="A file of fault rules.")
     ] = None,
+    data: Data = None,
     as_json: Json = False,
 ) -> None:
     """Check activities and fault rules.
@@ -124,6 +125,7 @@ def activity_check(
 @app.command("show")
 def activity_show(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
+    data: Data = None,
     as_json: Json = False,
 ) -> None:
     """Show an activity: its stages, facts and behaviours."""
@@ -148,6 +150,7 @@ def activity_try(
     activity: Annotated[str, typer.Argument(help="An activity, or its TOML.")],
     users: Users = TO_BEGIN_WITH,
     seed: Seed = 1,
+    data: Data = None,
     as_json: Json = False,
 ) -> None:
     """Play a game as the activity's file expects it.

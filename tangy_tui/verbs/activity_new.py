@@ -14,6 +14,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data
 
 if TYPE_CHECKING:
     from tangy_tui.app.new_activity import Draft
@@ -56,6 +57,7 @@ def activity_new(
     yes: Annotated[
         bool, typer.Option("--yes", help="Ask nothing: what no option says is as usual.")
     ] = False,
+    data: Data = None,
 ) -> None:
     """Make a new activity; it asks you, shows a game of it, and writes it.
 
@@ -102,7 +104,7 @@ def activity_new(
             raise TangyError(problems[0])
     else:
         _ask_all(draft, read)
-    _write(draft, read)
+    _write(draft, read, data)
 
 
 def _give(draft: Draft, answers: dict[str, str | int | None]) -> None:
@@ -245,13 +247,13 @@ def _made(draft: Draft, read: list[ChoiceQuestion], *, show: bool) -> list[str]:
     return []
 
 
-def _write(draft: Draft, read: list[ChoiceQuestion]) -> None:
+def _write(draft: Draft, read: list[ChoiceQuestion], data: Path | None) -> None:
     from tangy_tui.app.new_activity import CARDS
     from tangy_tui.verbs.activity_building import built
     from tangy_tui.verbs.activity_writing import write_new
 
     toml, table = built(draft, read)
-    write_new(draft.folder, draft.name, toml, table, cards=draft.kind == CARDS)
+    write_new(draft.folder, draft.name, toml, table, data, cards=draft.kind == CARDS)
 
 
 def _show(*lines: str) -> None:

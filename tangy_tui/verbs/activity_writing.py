@@ -9,6 +9,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data, as_given
 
 LARGEST_QUESTIONS = 1_000_000  # bytes of a file of questions
 
@@ -17,6 +18,7 @@ def activity_import(
     file: Annotated[Path, typer.Argument(help="Questions: Aiken format, or CSV of Kahoot.")],
     title: Annotated[str, typer.Option(help="What the activity is called.")],
     folder: Annotated[Path, typer.Option(help="Where the files go.")] = Path(),
+    data: Data = None,
 ) -> None:
     """Make an activity from a file of questions.
 
@@ -38,7 +40,7 @@ def activity_import(
     base = known_activities()[QUESTIONS_ACTIVITY].read_text(encoding="utf-8")
     toml = question_files.questions_activity(base, name, title, questions)
     table = question_files.questions_table(questions, template.OR, template.HINT)
-    write_new(folder, name, toml, table)
+    write_new(folder, name, toml, table, data)
 
 
 def activity_convert(
@@ -71,8 +73,13 @@ def activity_convert(
         print(plain(line))
 
 
-def write_new(folder: Path, name: str, activity: str, items: str, *, cards: bool = False) -> None:
-    """Write the file of a new activity, and its table if it has one; never overwrite a file."""
+def write_new(
+    folder: Path, name: str, activity: str, items: str, data: Path | None, *, cards: bool = False
+) -> None:
+    """Write the file of a new activity, and its table if it has one; never overwrite a file.
+
+    The commands to go on with get the data folder of this call.
+    """
     from tangy_tui.text.activity_questions import written_lines
 
     toml, table = folder / f"{name}.toml", folder / f"{name}.csv"
@@ -82,7 +89,8 @@ def write_new(folder: Path, name: str, activity: str, items: str, *, cards: bool
     _write(toml, activity, instead)
     if items:
         _write(table, items, instead)
-    for line in written_lines(str(toml), str(table) if items else "", cards=cards):
+    files = str(toml), str(table) if items else ""
+    for line in written_lines(*files, cards=cards, options=as_given(data)):
         print(plain(line))
 
 

@@ -11,6 +11,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text import conflicts as text
+from tangy_tui.text.follow_up import follow_up
 from tangy_tui.verbs.common import REGISTERED, ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -42,7 +43,7 @@ def list_them(
     """List the demonstrations and their problems."""
     from tangy_tui.learning.demonstration_rows import list_rows
     from tangy_tui.learning.library import read_library
-    from tangy_tui.text.demonstrations import row_document
+    from tangy_tui.text.demonstrations import NONE_YET, row_document
     from tangy_tui.ui import reports
 
     with open_workspace(data, activity, REGISTERED, write=False) as workspace:
@@ -50,7 +51,8 @@ def list_them(
         if as_json:
             print_json([row_document(row) for row in rows])
         else:
-            reports.print_demonstrations([row for row in rows if row.state != "undone"])
+            used = [row for row in rows if row.state != "undone"]
+            reports.print_demonstrations(used, follow_up(NONE_YET, **workspace.call_options))
 
 
 @app.command()
@@ -182,10 +184,11 @@ def conflicts(
             print(f"Conflict {number}. {first}")
             for line in rest:
                 print(line)
+        options = workspace.call_options
         if found:
-            print(text.SETTLE_ONE)
+            print(follow_up(text.SETTLE_ONE, **options, unfinished=unfinished))
         else:
-            print(text.ALL_AGREE)
+            print(plain(text.all_agree(workspace.activity.title)))
 
 
 @app.command()
@@ -260,7 +263,6 @@ def _change(
 ) -> None:
     """Change the library, and print what changed."""
     from tangy_tui.learning.editing import Editor
-    from tangy_tui.text.numbers import counted
 
     with open_workspace(data, activity, REGISTERED) as workspace:
         editor = Editor(workspace.store, workspace.activity)
@@ -270,10 +272,10 @@ def _change(
             return
         print(plain(f"{before}{_edit_words(workspace, editor, edit)}"))
         if not before:
-            print(text.UNDO_TAKES_BACK)
+            print(follow_up(text.UNDO_TAKES_BACK, **workspace.call_options))
         if edit.done.what == "resolve":
             left = len(editor.library.conflicts)
-            print(f"{counted(left, 'conflict')} left; then `tangy learn`.")
+            print(follow_up(text.conflicts_left(left), **workspace.call_options))
 
 
 def _edit_document(edit: Edit) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.follow_up import follow_up
 from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
 from tangy_tui.text.policies import notice_words
 from tangy_tui.verbs.common import (
@@ -23,9 +24,12 @@ from tangy_tui.verbs.common import (
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.state import Situation
     from tangy_tui.app.workspace import Workspace
+    from tangy_tui.learning.policies import PolicyNotice
     from tangy_tui.learning.policy import Policy
 
 MOST_SHOWN = 8
@@ -84,7 +88,7 @@ def learn(
             raise TangyError(only_unfinished(sum(len(d.steps) for d in left_out)))
         before = last_policy(workspace.store, workspace.activity.name)
         used, notices = without_strange_steps(workspace.activity, used)
-        say_notices(notice_words(notices))
+        _say(workspace, notices)
         policy = learn_policy(
             workspace.activity,
             used,
@@ -107,7 +111,9 @@ def learn(
             lines = learnt_lines(of, policy, steps, apart, NOT_SHOWN)
             if before is not None:
                 lines += changed_lines(of, plain(before.name), changed)
-            print(*lines, sep="\n")
+            options = workspace.call_options
+            for line in lines:
+                print(follow_up(line, **options, unfinished=unfinished))
 
 
 def policy(
@@ -155,13 +161,18 @@ def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]
 # ------------------------------------------------------------------------------------- showing
 
 
+def _say(workspace: Workspace, notices: Sequence[PolicyNotice]) -> None:
+    options = workspace.call_options
+    say_notices([follow_up(words, **options) for words in notice_words(notices)])
+
+
 def _find(workspace: Workspace, name: str) -> Policy:
     from tangy_tui.learning.comparison import find_policy
     from tangy_tui.learning.policies import need_policy
 
     need_policy(workspace.store, workspace.activity)
     found, notices = find_policy(workspace.store, workspace.activity, name)
-    say_notices(notice_words(notices))
+    _say(workspace, notices)
     return found
 
 
@@ -198,7 +209,7 @@ def _compare(workspace: Workspace, a: str, b: str, as_json: bool) -> None:
 
     first, notices = find_policy(workspace.store, workspace.activity, a)
     second, more = find_policy(workspace.store, workspace.activity, b)
-    say_notices(notice_words([*notices, *more]))
+    _say(workspace, [*notices, *more])
     rows = compare(workspace.activity, first, second)
     if as_json:
         print_json(comparison_document(workspace, first, second, rows))

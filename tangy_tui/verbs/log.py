@@ -63,7 +63,7 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
     from tangy_tui.text.old_games import unknown_words
     from tangy_tui.ui.log_report import print_games
 
-    print_games(games)
+    print_games(games, "" if data is None else str(data))
     if unknown := sum(game.world == "unknown" for game in games):
         print_line(unknown_words(unknown))
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tangy_profiles.defaults import REGISTERED, USUAL_ROBOT
+from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.command_line import more_left_out
 from tangy_tui.ui.terminal import terminal_kind
@@ -34,11 +35,14 @@ def open_workspace(
 ) -> Iterator[Workspace]:
     """Open the workspace of a data folder, print the notices of its store, and close it at the end.
 
+    If an error names a command, the command gets the options of this call.
+
     Raises:
         TangyError: the folder, the activity, the robot or the room cannot be read.
     """
     from tangy_profiles.errors import StoreBusy
     from tangy_tui.app.workspace import Workspace, data_folder
+    from tangy_tui.text.follow_up import follow_up
     from tangy_tui.text.rooms import no_chosen_room
 
     folder = data_folder(data)
@@ -55,6 +59,11 @@ def open_workspace(
         if write:
             workspace.door.open()
         yield workspace
+    except TangyError as error:
+        told = follow_up(str(error), **workspace.call_options)
+        if told != str(error):
+            error.args = (told,)
+        raise
     finally:
         say_aside(workspace.store)
         workspace.close()

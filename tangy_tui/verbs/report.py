@@ -227,6 +227,7 @@ def _read(data: Path | None, also: Sequence[Path] | None, activity: str) -> list
     from tangy_profiles.log_file import FILE
     from tangy_tui.monitoring.games import read_games
     from tangy_tui.monitoring.house import read_log
+    from tangy_tui.text.follow_up import follow_up
     from tangy_tui.text.games import NONE_YET
     from tangy_tui.text.house import NOT_THERE
 
@@ -238,7 +239,7 @@ def _read(data: Path | None, also: Sequence[Path] | None, activity: str) -> list
             games = read_games(store)
             logs.append(read_log(store, names, known_activities_of(games, activity)))
     if not any(log.replays for log in logs):
-        raise TangyError(NONE_YET)
+        raise TangyError(follow_up(NONE_YET, data="" if data is None else str(data)))
     return logs
 
 

@@ -156,9 +156,7 @@ def _teach_by_lines(
     resume: bool,
     tour: bool,
 ) -> None:
-    from tangy_tui.app.chosen_activity import chosen_activity
     from tangy_tui.app.teacher_profile import change_name
-    from tangy_tui.app.workspace import data_folder
     from tangy_tui.console.after_teaching import AfterTeaching
     from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.teaching import TeachingLines
@@ -168,11 +166,7 @@ def _teach_by_lines(
     from tangy_tui.text.teaching_commands import command_line
 
     folder = workspace.store.folder
-    usual = chosen_activity(folder)
-    options = {
-        "activity": None if workspace.profile == usual else workspace.profile,
-        "data": None if folder == data_folder(None).absolute() else str(folder),
-    }
+    options = workspace.call_options
     who = None if teaching.teacher == workspace.teacher else teaching.teacher
     write: Callable[[str], None] = (lambda _: None) if as_json else common.print_line
     read = line_reader(script)
@@ -210,6 +204,7 @@ def _learn(workspace: Workspace, read: Callable[[], str | None] | None) -> list[
     from tangy_tui.app.training import learn
     from tangy_tui.console.conflicts import settle_conflicts
     from tangy_tui.learning.library import read_library
+    from tangy_tui.text.follow_up import follow_up
     from tangy_tui.text.learnt import NOT_SHOWN, learnt_lines
 
     if read is not None:
@@ -217,7 +212,8 @@ def _learn(workspace: Workspace, read: Callable[[], str | None] | None) -> list[
     policy = learn(workspace)
     library = read_library(workspace.store, workspace.activity.name)
     steps = sum(len(shown.steps) for shown in library.finished)
-    return learnt_lines(workspace.activity, policy, steps, 0, NOT_SHOWN)
+    lines = learnt_lines(workspace.activity, policy, steps, 0, NOT_SHOWN)
+    return [follow_up(line, **workspace.call_options) for line in lines]
 
 
 def _play(workspace: Workspace, teacher: str) -> None:

@@ -95,7 +95,7 @@ def test_no_number_of_games_wraps_the_list(
         number, "feedfacefeed", 1, now, "bingo", "policy 12", "d" * 64, ("user1",),
         112, 3, 14, now, 9, "somebody said stop",
     )  # fmt: skip
-    print_games([game])
+    print_games([game], "")
     shown = capsys.readouterr().out.splitlines()
     (row,) = [line for line in shown if "feedfa" in line]
     for part in (
@@ -109,7 +109,7 @@ def test_no_number_of_games_wraps_the_list(
     ):
         assert part in row
     long = replace(game, policy="the one that was learnt after lunch", activity="a long name")
-    print_games([long])
+    print_games([long], "")
     shown = capsys.readouterr().out.splitlines()
     assert all(len(line) <= 80 for line in shown)
     assert any("17, 3 critical stopped" in line for line in shown)
