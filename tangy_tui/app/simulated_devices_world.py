@@ -280,11 +280,10 @@ class BenchedWorld(LiveWorld):
             if kind.name not in self.present:
                 self.inject(kind.name)
         if remedy.kind == "call expert":
-            stood = self.stood()
             if self.link.silent or self.link.state.failed:
                 super().recover(remedy)
                 self._open_tablet()
-            return stood + self._expert_comes(remedy)
+            return self._expert_comes(remedy)
         if remedy.kind == "other requests":
             self._listens = True
         if remedy.kind == "restart":
@@ -322,7 +321,6 @@ class BenchedWorld(LiveWorld):
             with suppress(DeviceError):
                 self.link.do("wait", seconds=EXPERT_SECONDS)
             self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
-        self.stood()  # its result includes that time
         return max(0.0, self.link.time - began)
 
     # ------------------------------------------------------------------------ what is counted

@@ -106,7 +106,6 @@ class LiveWorld(LivePlan):
         )
         self.sitting: dict[str, str] = {}
         """People seen at other places than their own in this game."""
-        self._halted = 0.0  # since when it has been halted, 0: it is not
         self._due = 0.0  # when the next number may be called
 
     def begin(self) -> ActivityState:
@@ -379,17 +378,6 @@ class LiveWorld(LivePlan):
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, a user or an expert handle a fault; return the duration in s.
 
-        The time for which the halted robot stood still before, while staff acted, is included.
+        The time for which a halted robot stood still before passed on the robot's clock.
         """
-        if remedy.kind == "halt":
-            self._halted = self._halted or self.link.time
-            return self._remedies.do(remedy)
-        took = self.stood() + self._remedies.do(remedy)
-        self._halted = self.link.time if self._halted and remedy.kind != "resume" else 0.0
-        return took
-
-    def stood(self) -> float:
-        """Return for how many s the robot has been halted since the last query."""
-        since, now = self._halted, self.link.time
-        self._halted = now if since else 0.0
-        return max(0.0, now - since) if since else 0.0
+        return self._remedies.do(remedy)
