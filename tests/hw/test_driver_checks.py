@@ -19,7 +19,9 @@ def at(x: float, y: float, heading: float, stamp: float) -> Stamped[Odometry]:
     return Stamped(Odometry(Pose(x, y, heading), Twist(0.3, 0.0)), stamp, int(stamp * 10))
 
 
-def test_bad_data_are_an_error_until_they_make_sense_again() -> None:
+def test_bad_data_are_an_error_until_they_make_sense_again(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     parts = ToldBody()
     data = CheckedData(parts.body())
     good, moved = data.scan, data.odometry
@@ -29,6 +31,7 @@ def test_bad_data_are_an_error_until_they_make_sense_again() -> None:
     parts.base.odometry = at(math.nan, 0.0, 0.0, 1.0)
     assert (data.scan, data.odometry) == (good, moved)  # the last ones that made sense
     assert data.report(parts.laser).state == data.report(parts.base).state == ERROR
+    assert "laser: 31 of 31 ranges are NaN" in caplog.text
     parts.laser.scan = Stamped(scan, 2.0, 3)
     parts.base.odometry = at(2.0, 1.0, 0.0, 2.0)
     assert data.scan is parts.laser.scan and data.odometry is parts.base.odometry

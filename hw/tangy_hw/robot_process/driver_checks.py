@@ -7,6 +7,7 @@ the robot stands, rather than driving by them.
 from __future__ import annotations
 
 import asyncio
+import logging
 import math
 from typing import Any
 
@@ -25,6 +26,8 @@ from tangy_hw.robot_process.body import Body
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, NEVER, Reading
 from tangy_profiles.reading import plain
+
+_LOG = logging.getLogger(__name__)
 
 START_SECONDS = 20.0
 FEWEST_BEAMS = 10
@@ -159,6 +162,7 @@ class CheckedData:
         value = self._body.base.odometry
         if value is not None and not self._problem("base", value) and value is not self._raw:
             if self._raw is not None and _jumps(self._raw, value):
+                _LOG.warning("base: its odometry began anew")
                 self._begins = (value.value.pose, self._placed(self._raw.value.pose))
             self._raw = value
         if self._raw is None or self._begins is None:
@@ -181,7 +185,10 @@ class CheckedData:
         known = self._known.get(name)
         if known is None or known[0] is not value:
             check = scan_problem if name == "laser" else odometry_problem
-            known = self._known[name] = (value, check(value))
+            problem = check(value)
+            if problem and (known is None or known[1] != problem):
+                _LOG.warning("%s: %s", name, problem)
+            known = self._known[name] = (value, problem)
         return known[1]
 
 
