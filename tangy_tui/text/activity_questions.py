@@ -127,10 +127,10 @@ def question_lines(draft: Draft, key: str) -> list[str]:
     """Return a question, with its choices, and with what Enter means in brackets."""
     base, number = split_key(key)
     item = draft.said.get(new.ITEM, "").capitalize()
-    asked = QUESTIONS[base].format(n=number, folder=draft.folder, item=item)
+    asked = QUESTIONS[base].format(n=number, folder=folder_words(str(draft.folder)), item=item)
     default = draft.default(key)
     if number and base == draft.fields[0]:
-        ends = ENDS if number > 1 or base == "text" else ENDS_EMPTY
+        ends = ENDS if number > 1 else ENDS_EMPTY
         asked += (ends if not default else "") + ":"
     lines = [f"{asked} [{_said(base, default)}]" if default else asked]
     if base == new.KIND:
@@ -142,9 +142,16 @@ def question_lines(draft: Draft, key: str) -> list[str]:
     return lines
 
 
+def folder_words(folder: str) -> str:
+    """Name a folder in a sentence."""
+    return "this folder" if folder == "." else folder
+
+
 def problem_words(problem: Problem) -> str:
     """Tell why an answer cannot be taken, and what to type."""
     named = problem.named
+    if problem.code == "no file":
+        named = (named[0], folder_words(named[1]))
     return PROBLEMS[problem.code].format(*named, count=len(named), all=", ".join(named))
 
 

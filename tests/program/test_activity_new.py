@@ -11,7 +11,7 @@ from subprocess import CompletedProcess
 import pytest
 
 from tangy_tui.app.new_activity import KINDS
-from tangy_tui.text.activity_questions import PROBLEMS
+from tangy_tui.text.activity_questions import ENDS, ENDS_EMPTY, PROBLEMS
 from tests.support.media import make_picture
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -169,6 +169,20 @@ def test_the_article_of_an_item_is_removed(said: str, tangy: Tangy, tmp_path: Pa
     assert tangy("activity", "new", tmp_path, *options).returncode == 0
     item = said.removeprefix("An ").removeprefix("a ").removeprefix("the ")
     assert f"The first {item}," in (tmp_path / "poems.csv").read_text("utf-8")
+
+
+def test_the_present_folder_is_named_in_words(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    lacks = ("--title", "Ours", "--yes", "--row", "Who?; you; me; ; no.png")
+    assert "There is no no.png in this folder." in tangy("activity", "new", *lacks).stderr
+
+
+def test_the_first_row_of_a_table_can_be_left_to_examples(tangy: Tangy, tmp_path: Path) -> None:
+    asked = tangy("activity", "new", tmp_path, stdin="Poems\ntalk\npoem\n\nOde\n")
+    assert f"Poem 1, as Tangy should say it{ENDS_EMPTY}:" in asked.stdout
+    assert f"Poem 2, as Tangy should say it{ENDS}:" not in asked.stdout
 
 
 def test_an_existing_file_is_not_overwritten(tangy: Tangy, tmp_path: Path) -> None:
