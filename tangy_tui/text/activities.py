@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from tangy_profiles.declared.activity import DeclaredActivity
+from tangy_profiles.declared.items import empty_cells
 from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.situation_words import seen_words
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
@@ -136,6 +138,31 @@ def without_words(activity: DeclaredActivity) -> list[str]:
     ]
 
 
+def table_lines(activity: DeclaredActivity) -> Iterator[str]:
+    """Tell how tables were read that are not plain CSV, and which cells are missing."""
+    declaration = activity.declaration
+    for table in declaration.tables:
+        if table.windows:
+            yield (
+                f"{table.file}: it is not saved as UTF-8, so Tangy reads it as text of Windows. If"
+                " letters with accents look wrong, save it as CSV UTF-8 in your program."
+            )
+    for cell in islice(empty_cells(declaration), MOST_CELLS):
+        yield (
+            f"{declaration.items.file}: row {cell.row}, column {cell.column} is empty: there"
+            f" {cell.behaviour!r} has nothing to say."
+        )
+
+
+def separator_notes(activity: DeclaredActivity) -> Iterator[str]:
+    """Tell which tables have something else than commas between their cells."""
+    for table in activity.declaration.tables:
+        if table.separator in SEPARATORS:
+            yield f"read {table.file} with {SEPARATORS[table.separator]} between its columns."
+
+
+MOST_CELLS = 10
+SEPARATORS = {";": "semicolons", "\t": "tabs"}
 SAYS_NOTHING = "says nothing and is asked again"
 TRIED = "The game has come to its end."
 

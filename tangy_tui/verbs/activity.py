@@ -266,7 +266,7 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.language.activity_check import CheckedFile, check_activity
-    from tangy_tui.text.activities import without_words
+    from tangy_tui.text.activities import separator_notes, table_lines, without_words
     from tangy_tui.text.activity_search import dead_end_lines, finding_words, search_lines
 
     try:
@@ -285,8 +285,14 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
             )
             for one in found.flaws
         ]
-        notes = map(plain, search_lines(found, teams=bool(activity.teams)))
-        warnings = (*checked.warnings, *flaws, *map(plain, without_words(activity)))
+        told = search_lines(found, teams=bool(activity.teams))
+        notes = map(plain, (*separator_notes(activity), *told))
+        warnings = (
+            *map(plain, table_lines(activity)),
+            *checked.warnings,
+            *flaws,
+            *map(plain, without_words(activity)),
+        )
         checked = replace(checked, warnings=warnings, notes=tuple(notes))
     return checked, activity
 

@@ -11,8 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import read_activity, shipped_activities
+from tangy_profiles.declared.items import EmptyCell, empty_cells, read_csv
 from tangy_profiles.declared.reader import read_declaration
-from tangy_profiles.declared.source import MistakesError
+from tangy_profiles.declared.source import MistakesError, SourceText
+from tangy_profiles.declared.table_text import ReadAs
 from tangy_profiles.errors import ProfileError
 from tests.support.declared import DECLARED
 from tests.support.laws import tried
@@ -158,6 +160,61 @@ def test_a_byte_order_mark_and_blank_lines_are_ignored(folder: Path) -> None:
     (folder / "trivia.csv").write_text("\ufeff" + items + "\n,,,,,\n", encoding="utf-8")
     (folder / "mine.toml").write_text(TEXT, encoding="utf-8")
     assert read_declaration(folder / "mine.toml").items == read_declaration(SHIPPED).items
+
+
+@pytest.mark.parametrize(
+    ("encoding", "separator", "windows"),
+    [
+        ("utf-8", ";", False), ("cp1252", ",", True), ("cp1252", ";", True),
+        ("utf-8-sig", "\t", False), ("utf-16", "\t", False),
+    ],
+)  # fmt: skip
+def test_a_table_is_read_as_spreadsheets_save_it(
+    folder: Path, encoding: str, separator: str, windows: bool
+) -> None:
+    rows = [["ask", "right"], ["Was blüht, im Mai?", "Flieder; auch Mohn"], ["Wo?", "Hier"]]
+    quoted = [separator.join(f'"{cell}"' for cell in row) for row in rows[1:]]
+    lines = [separator.join(rows[0]), *quoted]
+    (folder / "t.csv").write_bytes("\r\n".join(lines).encode(encoding))
+    source = SourceText("a.toml", "")
+    assert read_csv(source, ("items",), folder / "t.csv") == rows
+    assert source.tables == [ReadAs("t.csv", windows, separator)]
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"PK\x03\x04\0\0", "save it as CSV UTF-8"),
+        (b"ask,right\nWhat?,\x81", "save it as CSV UTF-8"),
+        (b'ask,right\n"a "b" c",d', "line 2: its quotation marks do not match"),
+        (b"the question,a,b,c,right,hint\n1,2,3,4,2,6", "such as 'the_question'"),
+    ],
+)
+def test_a_table_that_cannot_be_read_is_the_only_mistake(
+    folder: Path, content: bytes, told: str
+) -> None:
+    (folder / "trivia.csv").write_bytes(content)
+    (line,) = mistakes(folder)
+    assert told in line
+
+
+def test_an_empty_right_answer_is_named_by_row_and_column(folder: Path) -> None:
+    rows = (folder / "trivia.csv").read_text(encoding="utf-8").splitlines()
+    rows[2] = "Whose?,a,b,c,,hint"
+    (folder / "trivia.csv").write_text("\n".join(rows), encoding="utf-8")
+    (line,) = mistakes(folder, ('options = ["a", "b", "c"], ', ""))
+    assert "trivia.csv: row 3, column right is empty; 'answer' compares answers with it." in line
+
+
+def test_an_empty_cell_that_leaves_a_behaviour_without_words_is_found(folder: Path) -> None:
+    rows = (folder / "trivia.csv").read_text(encoding="utf-8").splitlines()
+    rows[2] = "Whose?,a,b,c,b,"
+    (folder / "trivia.csv").write_text("\n".join(rows), encoding="utf-8")
+    path = folder / "mine.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    assert list(empty_cells(read_declaration(path))) == [EmptyCell(3, "hint", "give hint")]
+    path.write_text(TEXT.replace('says = ["', 'says = ["Think, all.", "'), encoding="utf-8")
+    assert not list(empty_cells(read_declaration(path)))
 
 
 @given(token=st.sampled_from(TOKENS), how=st.sampled_from(("twist", "drop", "double", "number")))

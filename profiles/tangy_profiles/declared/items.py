@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tangy_profiles.declared.judging import LETTERS, plain_words
-from tangy_profiles.declared.model import Fact, Items
+from tangy_profiles.declared.model import Declaration, Fact, Items
 from tangy_profiles.declared.section import Section
 from tangy_profiles.declared.source import SourceText
+from tangy_profiles.declared.table_text import table_rows
+from tangy_profiles.declared.vocabulary import SLOT
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.given_file import read_given
 from tangy_profiles.plain_text import plain
@@ -19,10 +20,31 @@ LARGEST_TABLE = 1_000_000  # bytes
 MOST_ROWS = 5_000
 
 
+@dataclass(frozen=True, slots=True)
+class EmptyCell:
+    """An empty cell that leaves a behaviour without words: its row as in the file, from 1."""
+
+    row: int
+    column: str
+    behaviour: str
+
+
+def empty_cells(declaration: Declaration) -> Iterator[EmptyCell]:
+    """Yield the empty cells without which a behaviour has no text to say."""
+    items = declaration.items
+    for behaviour in declaration.behaviours.values():
+        for texts in behaviour.says.values():
+            slots = [[one for one in SLOT.findall(t) if one in items.columns] for t in texts]
+            for row in range(len(items.rows)):
+                lacks = [[one for one in of_it if not items.value(row, one)] for of_it in slots]
+                if lacks and all(lacks):
+                    yield EmptyCell(row + 2, lacks[0][0], behaviour.name)
+
+
 def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[str]]:
     """Read a CSV file beside an activity's file, and record its mistakes.
 
-    The text is UTF-8, with or without a byte order mark; blank lines are skipped.
+    It is read as spreadsheet programs save it (see `table_rows`); blank lines are skipped.
 
     Args:
         source: records the mistakes.
@@ -38,11 +60,11 @@ def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[
         source.wrong(key, str(error))
         return []
     try:
-        lines = content.decode("utf-8-sig").splitlines()
-        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, strict=True) if row]
-    except (UnicodeDecodeError, csv.Error) as error:
-        source.wrong(key, f"{plain(path.name)} cannot be read: {error}")
+        rows, read_as = table_rows(content, plain(path.name))
+    except ValueError as error:
+        source.wrong(key, f"{plain(path.name)}: {error}")
         return []
+    source.tables.append(read_as)
     rows = [row for row in rows if any(row)]
     if len(rows) < 2:
         source.wrong(key, f"{plain(path.name)} has no row under its header")
@@ -64,6 +86,16 @@ def read_csv(source: SourceText, key: tuple[str, ...], path: Path) -> list[list[
                 source.wrong(key, f"{plain(path.name)}: row {number} cannot be shown")
                 return []
     return rows
+
+
+def check_right_answers(top: Section, items: Items, facts: Iterable[Fact]) -> None:
+    """Record the rows without a right answer to compare a free answer with."""
+    for fact in facts:
+        for number in range(len(items.rows) if fact.checks and not fact.options else 0):
+            if not items.value(number, fact.checks):
+                problem = f"{items.file}: row {number + 2}, column {fact.checks} is empty"
+                why = f"{fact.name!r} compares answers with it"
+                top.table("items").wrong("file", f"{problem}; {why}", items.file)
 
 
 def with_right_options(top: Section, items: Items, facts: Iterable[Fact]) -> Items:

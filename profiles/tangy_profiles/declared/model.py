@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
+from tangy_profiles.declared.table_text import ReadAs
 from tangy_profiles.declared.vocabulary import (
     ADDRESSED,
     Comparison,
@@ -175,6 +176,7 @@ class Items:
     rows: tuple[tuple[str, ...], ...] = ()
     order: Order = "given"
     rounds: int = 0
+    file: str = ""
 
     def value(self, row: int, column: str) -> str:
         """Return the cell of a row and column ("": there is no such row)."""
@@ -205,6 +207,8 @@ class Declaration:
     """For how many people it is, how long it takes, and what is needed."""
     media: Mapping[str, MediaFile] = field(default_factory=dict)
     """The pictures and sounds, by file name."""
+    tables: tuple[ReadAs, ...] = ()
+    """How the tables beside the file were read."""
     whose: Mapping[Selector, FactCondition] = field(default_factory=dict)
     """The conditions of the selectors that have one."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Collection, Mapping, Sequence
 from difflib import get_close_matches
@@ -11,7 +12,7 @@ from typing import cast
 from tangy_profiles.declared.behaviour_reader import read_behaviours
 from tangy_profiles.declared.conditions import ALIKE, Phrasing
 from tangy_profiles.declared.facts_reader import read_facts, read_words
-from tangy_profiles.declared.items import read_csv, with_right_options
+from tangy_profiles.declared.items import check_right_answers, read_csv, with_right_options
 from tangy_profiles.declared.media import read_media
 from tangy_profiles.declared.model import (
     Declaration,
@@ -72,8 +73,11 @@ def read_declaration(path: Path) -> Declaration:
 def _read(top: Section, path: Path) -> Declaration:
     top.only(*KEYS)
     items = _read_items(top, path.parent)
+    if "items" in top and not items.rows:
+        top.source.close()  # most of the other mistakes would only follow from it
     facts = read_words(top, read_facts(top, items.columns))
     items = with_right_options(top, items, facts.values())
+    check_right_answers(top, items, facts.values())
     phrasing = Phrasing(facts)
     name = top.text("name", plain(path.stem))
     title = top.text("title", name[:1].upper() + name[1:])
@@ -104,6 +108,7 @@ def _read(top: Section, path: Path) -> Declaration:
         pronunciations=_read_pronunciations(top.table("pronunciations")),
         media=read_media(top, behaviours, items, path.parent),
         whose=phrasing.whose,
+        tables=tuple(top.source.tables),
     )
 
 
@@ -122,11 +127,16 @@ def _read_items(top: Section, folder: Path) -> Items:
     if not rows:
         section.whole("rounds", 1, 999, 1)
         return Items()
-    for column in rows[0]:
-        if column in RESERVED or not column.isidentifier():
-            section.wrong("file", f"{name}: a column cannot be called {column!r}", name)
+    wrong = [one for one in rows[0] if one in RESERVED or not one.isidentifier()]
+    for column in wrong:
+        words = "_".join(re.findall(r"\w+", column))
+        such = f", such as {words!r}" if words.isidentifier() and words not in RESERVED else ""
+        problem = f"a column cannot be called {column!r}: give it a name of one word{such}"
+        section.wrong("file", f"{name}: {problem}", name)
+    if wrong:
+        return Items()
     rounds = section.whole("rounds", 1, len(rows) - 1, len(rows) - 1)
-    return Items(tuple(rows[0]), tuple(map(tuple, rows[1:])), order, rounds)
+    return Items(tuple(rows[0]), tuple(map(tuple, rows[1:])), order, rounds, plain(name))
 
 
 def _read_teams(top: Section) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from tangy_profiles.declared.table_text import ReadAs
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.plain_text import plain
 
@@ -31,6 +32,8 @@ class SourceText:
     def __init__(self, file: str, text: str) -> None:
         """Use a file's name and its text."""
         self.file = file
+        self.tables: list[ReadAs] = []
+        """How the tables beside the file were read."""
         self._text = text
         self._found: list[tuple[int, int, str]] = []
         self._causes: set[str] = set()
