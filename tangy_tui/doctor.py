@@ -178,14 +178,14 @@ def examine_contacts(robot: Robot, seconds: float = TEST_SECONDS) -> list[Findin
     """
     from tangy_hw.calling import CallNews, call
     from tangy_profiles.contacts import ROLES
-    from tangy_tui.text.calls import NOBODY_NAMED, TEST_CALL, tried_words
+    from tangy_tui.text.calls import TEST_CALL, nobody_named, tried_words
 
     findings = []
     for role in ROLES:
         contact = robot.expert if role == EXPERT else robot.staff
         part = f"{robot.title}'s {role}"
         if contact is None:
-            findings.append(Finding(part, False, NOBODY_NAMED))
+            findings.append(Finding(part, False, nobody_named(role)))
             continue
         if not contact.reachable:
             findings.append(Finding(f"{part} {contact.name}", False, tried_words(contact, "none")))

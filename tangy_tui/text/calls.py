@@ -16,7 +16,11 @@ SIMULATED = "The simulated expert has looked at it."
 CALLS_NOBODY = "Tangy calls nobody itself."
 TEST_CALL = "This is a test of how Tangy calls you. Nothing is wrong."
 REHEARSAL = "This is a rehearsal: the robot is simulated. Nothing is wrong."
-NOBODY_NAMED = "nobody is named in the robot's file"
+
+
+def nobody_named(role: str) -> str:
+    """Tell that a robot's file names nobody for a role, and how to name somebody."""
+    return f"nobody is named; add [{role}] to the robot's file, as in tangy.toml."
 
 
 def whom_to_call(robot: Robot) -> str:

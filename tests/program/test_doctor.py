@@ -21,7 +21,8 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.process_log import LEVEL
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
-from tangy_tui.doctor import Finding, examine, examine_robot
+from tangy_tui.doctor import Finding, examine, examine_contacts, examine_robot
+from tangy_tui.text.maps import recorded_words
 from tests.hw.speakers import Speaker, program
 
 
@@ -226,3 +227,14 @@ def test_a_robot_that_works_does_not_set_the_exit_status(
     done = tangy("doctor", "--robot", "tangy", "--data", tmp_path / "data")
     assert "ok       Tangy's laser scanner: mine works." in done.stdout
     assert done.returncode == 0
+
+
+def test_a_robot_that_calls_nobody_tells_what_to_add() -> None:
+    texts = {one.part: (one.state, one.text) for one in examine_contacts(load_robot())}
+    assert texts["Tangy's staff"][0] == "missing"
+    assert "add [staff] to the robot's file" in texts["Tangy's staff"][1]
+
+
+@pytest.mark.parametrize(("scans", "says"), [(1, "1 scan recorded"), (2, "2 scans recorded")])
+def test_one_recorded_scan_is_no_plural(scans: int, says: str) -> None:
+    assert recorded_words(scans, 0.0).startswith(f"{says},")
