@@ -30,11 +30,18 @@ _MET = {
     " before it, or for {...} that goes on in the next line",
     "unclosed array": "a comma or ] is missing before this",
     "unclosed inline table": "a comma or } is missing before this",
+    "expected ']' at the end of a table declaration": "a name of several words needs quotation"
+    ' marks, as in [behaviours."give hint"]',
+    "expected ']]' at the end of an array declaration": "a name of several words needs quotation"
+    ' marks, as in [[behaviours."give hint"]]',
     "expected '=' after a key in a key/value pair": "after a key = is missing",
     "expected newline or end of document after a statement": "something else follows this value; a"
     " decimal number has a point, as in 0.5",
 }
 """What the TOML parser says of the commonest mistakes (in any case), in words for authors."""
+
+_INSIDE = re.compile(r'"[^"]*"\s*[^\s",\]}#=.]')
+"""A text, and what follows it that cannot stand there: it had a quotation mark inside."""
 
 
 def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
@@ -287,12 +294,15 @@ class Table:
                 raise self.wrong(key, f"is not a key here; {meant}")
 
 
-def _in_words(error: tomllib.TOMLDecodeError) -> str:
+def _in_words(error: tomllib.TOMLDecodeError, text: str) -> str:
     """Return a hint for the author if the parser names only the text it met."""
     told = str(error)
+    at = re.search(r"at line (\d+)", told)
+    lines = text.split("\n")
+    line = lines[int(at[1]) - 1] if at and int(at[1]) <= len(lines) else ""
     for met, words in _MET.items():
         told = re.sub(re.escape(met), words, told, flags=re.IGNORECASE)
-    return told
+    return told + ('; write a quotation mark inside a text as \\"' if _INSIDE.search(line) else "")
 
 
 def read_toml(path: Path) -> Table:
@@ -311,7 +321,7 @@ def read_toml(path: Path) -> Table:
     except UnicodeDecodeError:
         raise ProfileError(f"{name}: is not UTF-8 text.") from None
     except tomllib.TOMLDecodeError as error:
-        raise ProfileError(plain(f"{name}: is not TOML: {_in_words(error)}.")) from None
+        raise ProfileError(plain(f"{name}: is not TOML: {_in_words(error, text)}.")) from None
     except ValueError:  # an integer with too many digits
         raise ProfileError(f"{name}: holds a number of thousands of digits.") from None
     except RecursionError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -161,6 +162,26 @@ def test_absent_players_cannot_ask_answer_or_score(game: DeclaredGame) -> None:
         assert not game.holds(every, None)
         game.observe("answer", one, "eight")
     assert game.holds(every, None)
+
+
+@pytest.mark.parametrize(
+    ("hint", "text", "said"),
+    [
+        ("Sit up.", "{hint}. Well done.", "Sit up. Well done."),
+        ("Sit up.", "{hint}!", "Sit up!"),
+        ("Sit up!", "Now: {hint}.", "Now: Sit up!"),
+        ("Sit up.", "{hint}...", "Sit up...."),
+        ("Sit up.", "{hint} Well done.", "Sit up. Well done."),
+        ("Sit up", "{hint}.", "Sit up."),
+    ],
+)
+def test_a_sentence_in_a_text_has_one_full_stop(
+    hint: str, text: str, said: str, trivia: DeclaredActivity
+) -> None:
+    items = replace(trivia.declaration.items, columns=("hint",), rows=((hint,),))
+    game = DeclaredGame(replace(trivia.declaration, items=items), PLAYERS, (0,))
+    game.execute("ask question", "ann")
+    assert filled(game, text, None) == said
 
 
 def test_the_screen_names_the_person_asked_while_their_question_stays(game: DeclaredGame) -> None:

@@ -102,6 +102,8 @@ def test_an_unknown_key_is_refused_with_a_suggestion() -> None:
         ("b = [{ c = 1, }]", "look for a comma too many before it"),
         ("b = [{ c = 1,\n d = 2 }]", "{...} that goes on in the next line"),
         ("b = [1\nc = 2", "a comma or ] is missing before this (at line 3, column 1)"),
+        ('b = ["Number {n}: "{begin}" ..."]', 'write a quotation mark inside a text as \\"'),
+        ("[b.wait now]", 'a name of several words needs quotation marks, as in [behaviours."give'),
         ("b = { c = 1 d = 2 }", "a comma or } is missing before this"),
         ("b = { c: 1 }", "after a key = is missing"),
         ('b = "open', "this text has no quotation mark at its end (at line 2, column 10)"),

@@ -13,6 +13,8 @@ from tangy_profiles.declared.vocabulary import SLOT
 PERSON = re.compile(r"\x02([^\x03]*)\x03")
 """A person's id in a filled text, because the worlds do not know names."""
 OF_EACH = " of each"
+SLOT_AND_END = re.compile(rf"{SLOT.pattern}(?:([.!?])(?![.!?]))?")
+"""A slot with the end of the sentence after it, if that is a single character."""
 MOST_LINES = 6
 """How many people have a line each on the chest screen; of more, it shows a list."""
 
@@ -29,6 +31,8 @@ def filled(
         turn: the player whose turn it is in the text ("": whose turn it is now).
         shown: it is for the chest screen, not for speech.
 
+    If a value ends its sentence itself, as the text does after it, one full stop is dropped.
+
     Returns:
         The text, with people as ids (see `with_names`); "" if a slot is empty.
     """
@@ -36,13 +40,15 @@ def filled(
 
     def value(match: re.Match[str]) -> str:
         nonlocal empty
-        slot = match.group(1)
+        slot, end = match.group(1), match.group(2) or ""
         found = _table(game, slot) if shown else ""
         found = found or _value(game, slot, whom, turn)
         empty = empty or not found
-        return found
+        if end == "." and found.endswith((".", "!", "?")):
+            return found
+        return (found.removesuffix(".") if end else found) + end
 
-    text = SLOT.sub(value, template)
+    text = SLOT_AND_END.sub(value, template)
     return "" if empty else text
 
 
