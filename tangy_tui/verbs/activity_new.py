@@ -59,9 +59,10 @@ def activity_new(
     ] = False,
     data: Data = None,
 ) -> None:
-    """Make a new activity; it asks you, shows a game of it, and writes it.
+    """Make a new activity; it asks you first.
 
-    You can teach and play it at once. Each option answers a question.
+    It shows you a game before it writes anything, and you can teach and play it at once. Each
+    option answers a question.
     """
     from tangy_profiles.given_file import read_given_text
     from tangy_tui.app import new_activity as new
