@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.state import FRONT
-from tangy_tui.app.game_commands import ClaimCard, ComesIn, GoesAway, TakeBackCall
+from tangy_tui.app.game_commands import CallAgain, ClaimCard, ComesIn, GoesAway, TakeBackCall
 from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
 
@@ -274,7 +274,6 @@ def _whose_card(noted: StaffNote, name: Callable[[str], str]) -> str:
 
 
 NOT_WHILE_WORKING = "Not now: Tangy is busy. {pause} pauses it, {stop} stops it."
-BUSY = "Not now: Tangy is busy."
 WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
@@ -313,6 +312,8 @@ def waits_words(command: GameCommand, name: Callable[[str], str]) -> str:
             then = f"checks card {card}"
         case TakeBackCall(label) if label:
             then = f"takes {label} back"
+        case CallAgain():
+            then = "calls the last number again"
         case _:
             then = "does what you said"
     return f"One moment: Tangy finishes this, then {then}."

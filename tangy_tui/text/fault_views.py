@@ -16,3 +16,11 @@ WHAT_TO_DO = "What should I do?"
 
 WAITS = "waits for the "
 """The words before the device whose late data the robot waits for."""
+
+BEGINS = {
+    "expert": "Tangy stands still until staff have cleared it",
+    "user": "Tangy asks a user for help",
+    "teacher": "Tangy asks a teacher",
+    "continue": "Tangy goes on",
+}
+"""What Tangy is about to do, by the kind of recovery."""

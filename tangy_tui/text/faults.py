@@ -21,7 +21,7 @@ from tangy_tui.monitoring.fault import (
     FaultEvent,
     RecoveryEvent,
 )
-from tangy_tui.text.fault_views import WAITS
+from tangy_tui.text.fault_views import BEGINS, WAITS
 from tangy_tui.text.numbers import listed, ordinal
 from tangy_tui.text.times import clock, time_of_day
 
@@ -128,7 +128,7 @@ def doing_words(fault: Fault, book: FaultBook) -> str:
     """Tell what Tangy does about a fault at present."""
     move = _last(fault)
     if move is None:
-        return f"next: {RECOVERY_WORDS[fault.recovery]}"
+        return BEGINS[fault.recovery]
     match move.kind:
         case "asked":
             return f"asks{_tries(fault, move, book)}"
@@ -137,7 +137,7 @@ def doing_words(fault: Fault, book: FaultBook) -> str:
         case "went on":
             return "going on without"
         case "escalated":
-            return f"that did not help; next: {RECOVERY_WORDS[move.to]}"
+            return f"that did not help: {BEGINS[move.to]}"
     return _DOING.get(move.kind) or move_words(move)
 
 

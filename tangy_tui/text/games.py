@@ -174,6 +174,7 @@ def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -
 SKIP = "Play the rest of the game at once?"
 SKIP_DETAIL = "Then you see the last step, and what Tangy has learnt of the people."
 ANOTHER = "Play another game?"
+ANOTHER_DETAIL = "It begins as soon as this one is over."
 SEEN = "Have you seen this fault?"
 LEAVE = "Leave in the middle of the game?"
 LEAVE_DETAIL = "The game ends here, and the log says so. Tangy keeps what it has learnt. {report}"
@@ -242,3 +243,20 @@ def over_words(ended: GameEnded) -> str:
 def broken_off_words(steps: int, reason: str) -> str:
     """Tell that a game stopped, and why."""
     return f"The game stopped after {counted(steps, 'step')}. {reason}"
+
+
+def following_words(games: int) -> str:
+    """Tell how many more games begin after the present one, and when."""
+    follow = "Another game begins" if games == 1 else f"{games} more games begin"
+    return f"{follow} when this one is over."
+
+
+def dropped_words(games: int) -> str:
+    """Tell that the games that were to follow are dropped if staff leave; "" if none was."""
+    if games < 1:
+        return ""
+    return (
+        "The game that was to follow is dropped."
+        if games == 1
+        else (f"The {games} games that were to follow are dropped.")
+    )

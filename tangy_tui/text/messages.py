@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from datetime import datetime
 
+from tangy_profiles.game_records import MoveKind
+from tangy_tui.monitoring.fault import Diagnosed, FaultEvent
+from tangy_tui.text.faults import fault_lines
+
 TITLE = "The last messages"
 NONE_YET = "Tangy has not told you anything yet."
 KEYS = "up down more   esc closes"
@@ -14,7 +18,20 @@ HELP = (
     "Up and down scroll."
 )
 
+GONE: tuple[MoveKind, ...] = ("recovered", "ended")
+"""The moves that end a fault because it has gone."""
+
 
 def told_words(at: datetime, words: str) -> str:
     """Write a message with the time of day at which it was shown (s matter in a game)."""
     return f"{at:%H:%M:%S} {words}"
+
+
+def fault_message(event: FaultEvent) -> str:
+    """Tell a fault, or what became of it, in one message."""
+    if not isinstance(event, Diagnosed) and event.move.kind in GONE:
+        return f"{event.fault.name}: this fault has gone."
+    lines = fault_lines(event)
+    if isinstance(event, Diagnosed):
+        lines = lines[:1]  # the list of faults has the evidence
+    return " ".join(line.lstrip("!?* ") for line in lines)

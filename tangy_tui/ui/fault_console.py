@@ -97,6 +97,7 @@ class FaultConsole:
         self._free.set()
         self._dialog: CriticalDialog | None = None
         self._status = ("", "")
+        self._made = 0  # moves against faults that are shown
         self.staged = StagedRecovery(control.supervision)
         """The recovery whose outcome is shown later."""
         self._put_away: set[tuple[str, int]] = set()
@@ -126,8 +127,13 @@ class FaultConsole:
             events = []
         elif self._dialog is not None:
             self._dialog.look()
-        if events or self.supervision.status != self._status:
+        if events or self.supervision.status != self._status or self._made != self._moves:
             self._tell(events, False)
+
+    @property
+    def _moves(self) -> int:
+        """How many moves were made against faults; Tangy may still be speaking in the last one."""
+        return sum(len(fault.moves) for fault in self.supervision.faults)
 
     def try_again(self) -> None:
         """Resume polling, after writing the log had failed."""
@@ -160,6 +166,7 @@ class FaultConsole:
     def show(self) -> None:
         """Update banner and list, and open the dialog of a fault that halts the robot."""
         screen, supervision = self._screen, self.supervision
+        self._made = self._moves
         if supervision.halted is not None and not supervision.over and self._free.is_set():
             self._free.clear()
             screen.run_worker(self._attend(), name="fault", group="fault")

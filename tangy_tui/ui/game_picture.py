@@ -44,10 +44,12 @@ from tangy_tui.text.games import (
 )
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.learnt import replay_words
+from tangy_tui.text.messages import GONE, fault_message
 from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.keys import keymap_of
+from tangy_tui.ui.message_history import remember
 from tangy_tui.ui.reasons import DecisionGround, why_asked, why_now, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import Kind, LogView
@@ -148,7 +150,7 @@ class GamePicture:
                     log.write(once, "good")
                     self._screen.notify(once, markup=False)
                 case Diagnosed() | Moved():
-                    write_fault(self._screen, event)
+                    write_fault(self._screen, event, shows_end=self.counts is not None)
                     self.show_scene(0, drive=False, pace=pace)
                 case CallMade():
                     write_call(self._screen, event)
@@ -292,8 +294,11 @@ def write_call(screen: Screen[Any], made: CallMade) -> None:
     screen.query_one(LogView).write(words, CALLS.get(made.stage, "warn"))
 
 
-def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
-    """Write a fault or a recovery event to the log, with Tangy's speech."""
+def write_fault(screen: Screen[Any], event: FaultEvent, *, shows_end: bool = False) -> None:
+    """Write a fault or a recovery event to the log and the messages, with Tangy's speech.
+
+    With `shows_end`, a message tells that a fault is over, where the screen hides the log.
+    """
     fault, log = event.fault, screen.query_one(LogView)
     if isinstance(event, Moved) and event.move.speech:
         screen.query_one(RoomView).say(event.move.speech)
@@ -302,6 +307,7 @@ def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
     kind: Kind = "bad" if fault.critical else "warn"
     if isinstance(event, Diagnosed):
         log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)
+        remember(screen.app, fault_message(event))
         return
     move = event.move
     if move.kind in ENDINGS:
@@ -311,3 +317,7 @@ def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
     log.write(f"{fault.name}: {move_words(move)}.", kind)
     if move.speech:
         log.write(move.speech)
+    if shows_end and move.kind in GONE and not log.display:
+        screen.notify(fault_message(event), markup=False)
+    else:
+        remember(screen.app, fault_message(event))

@@ -97,10 +97,16 @@ async def test_another_game_can_be_scheduled_during_a_game(
         screen = pilot.app.screen
         await pilot.press("p", "g", "y")
         await pilot.pause()
-        assert screen.query_one(LogView).sentences[-1] == "Another game will follow."
-        assert "Another game will follow." in told(pilot)
+        follows = "Another game begins when this one is over."
+        assert screen.query_one(LogView).sentences[-1] == follows
+        assert follows in told(pilot)
         await pilot.press("g", "y")
-        assert screen.query_one(LogView).sentences[-1] == "2 more games will follow."
+        assert (
+            screen.query_one(LogView).sentences[-1] == "2 more games begin when this one is over."
+        )
+        await pilot.press("escape", "escape")  # closes the message first
+        await pilot.pause()
+        assert "The 2 games that were to follow are dropped." in pilot.text()
 
 
 @pytest.mark.slow

@@ -103,6 +103,14 @@ async def test_the_title_tells_what_tangy_said_as_far_as_there_is_room(run: Run)
         assert str(panel.border_title) == "Now │ Tangy said: The number is [B-7]."
         panel.show("B7", "Next: call number.", [], [], said="Tangy said: " + "long " * 40)
         title = str(panel.border_title)
-        assert title.endswith("…") and 70 < len(title) <= 78
+        assert title.endswith(" …") and 70 < len(title) <= 78
+        panel.styles.height = 13
+        words = " ".join(f"word{number:02}" for number in range(24))
+        panel.show("B7", "Next: call number.", [], [], said=f"Tangy said: {words}")
+        await pilot.pause()
+        title = str(panel.border_title)
+        below = " ".join(line.strip("│┃ ") for line in pilot.lines()[:2])
+        told = f"{title.removeprefix('Now │ ').removesuffix(' …')} {below.removeprefix('… ')}"
+        assert told.startswith(f"Tangy said: {words}")
         panel.show("B7", "Next: call number.", [], [])
         assert str(panel.border_title) == "Now"

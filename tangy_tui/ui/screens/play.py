@@ -141,7 +141,8 @@ class PlayScreen(PlayStaff):
     def action_again(self) -> None:
         """Play one more game, now or after this one, after confirmation."""
         if not self._refused():
-            self._sure(text.ANOTHER, "", self._another)
+            ends = self._supervision.over
+            self._sure(text.ANOTHER, "" if ends else text.ANOTHER_DETAIL, self._another)
 
     def _another(self) -> None:
         if self._refused():
@@ -152,9 +153,12 @@ class PlayScreen(PlayStaff):
             self._do(GoOn())
             self.run_worker(self._play(), name="game", exclusive=True)
         else:
-            more = self.games - self.tally.games - 1
-            follow = "Another game" if more == 1 else f"{more} more games"
-            self._tell_now(f"{follow} will follow.", "dim")
+            self._tell_now(text.following_words(self._to_follow), "dim")
+
+    @property
+    def _to_follow(self) -> int:
+        """How many games follow the present one."""
+        return self.games - self.tally.games - 1
 
     def action_leave(self) -> None:
         """Go back by one step, give up a question, or leave; in mid-game ask first."""
@@ -170,7 +174,8 @@ class PlayScreen(PlayStaff):
     async def _leave(self) -> None:
         """Ask whether to leave in mid-game; the game waits, which is no pause of staff."""
         self._leaving = True
-        dialog = ConfirmDialog(text.LEAVE, self._leave_detail(), yes="leave", no="go on")
+        detail = f"{self._leave_detail()} {text.dropped_words(self._to_follow)}".strip()
+        dialog = ConfirmDialog(text.LEAVE, detail, yes="leave", no="go on")
         with self._holding() as answered:
             leaves = await self.app.push_screen_wait(dialog)
             answered()

@@ -11,7 +11,7 @@ from textual.content import Content
 from tangy_tui.text.staff_view import Fact, more_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.rows import Row, RowView, fit, shorten
-from tangy_tui.ui.widgets.wrapping import wrap
+from tangy_tui.ui.widgets.wrapping import WORD, wrap
 
 ROWS, COLUMNS = 5, 3
 _FONT = """
@@ -61,7 +61,10 @@ TITLE = "Now"
 HARD = "\N{NO-BREAK SPACE}"
 
 NEXT_HEIGHT = 9
-"""A panel with more lines gives the next step two of them, if it needs them."""
+"""A panel with more lines gives the next step two of them, if it needs them.
+
+The same holds for what Tangy said beyond the title.
+"""
 
 PersonLine = tuple[str, str, str]
 """The name of a person, their state, and its ink."""
@@ -101,11 +104,13 @@ class StaffPanel(RowView, can_focus=True):
     ) -> None:
         """Show the last call, the next step, facts beside the call, people, and the board.
 
-        The title tells what Tangy `said`, as far as there is room. `news` stand above all else.
+        The title tells what Tangy `said`; what it has no room for stands below it. `news` stand
+        above the next step.
         """
         if said != self._said:
             self._said = said
             self._draw_title()
+            self._draw()
         if news != self._news:
             self._news = news
             self.return_to_top()
@@ -142,8 +147,26 @@ class StaffPanel(RowView, can_focus=True):
         self.border_subtitle = more_words(count) if count else ""
 
     def _draw_title(self) -> None:
-        said = shorten(clean(self._said), max(0, self._rows.width - len(TITLE) - 5))
+        said, more = self._said_in_title()
+        said = f"{said} …" if more else said
         self.border_title = Content(f"{TITLE} │ {said}" if said else TITLE)
+
+    def _said_in_title(self) -> tuple[str, str]:
+        """Divide what Tangy said: what the title has room for, and the rest."""
+        said = " ".join(WORD.findall(clean(self._said)))
+        room = max(0, self._rows.width - len(TITLE) - 5)
+        if cell_len(said) <= room:
+            return said, ""
+        first = wrap(said, room - 2)[0]
+        return first, said[len(first) :].strip()
+
+    def _said_below(self, width: int, height: int) -> list[str]:
+        """Wrap what Tangy said beyond the title."""
+        most, more = 2 if height > NEXT_HEIGHT else 1, self._said_in_title()[1]
+        lines = wrap(f"… {more}", width) if more else []
+        if len(lines) > most:
+            lines[most - 1] = shorten(" ".join(lines[most - 1 :]), width)
+        return lines[:most]
 
     def _draw(self) -> None:
         width, height = self._rows.width, self._rows.height
@@ -156,7 +179,8 @@ class StaffPanel(RowView, can_focus=True):
             next_lines[most - 1] = shorten(" ".join(next_lines[most - 1 :]), width)
         next_lines = next_lines[:most]
         news = wrap(clean(self._news), width)[:2] if self._news else []
-        rows: list[Row] = [((line, "warn"),) for line in news]
+        rows: list[Row] = [((line, "robot"),) for line in self._said_below(width, height)]
+        rows += [((line, "warn"),) for line in news]
         rows += [((line, "strong"),) for line in next_lines]
         rows += self._block(width, height)
         rows += self._everybody(width, max(1, height - len(rows)))
