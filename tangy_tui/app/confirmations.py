@@ -11,7 +11,14 @@ if TYPE_CHECKING:
     from tangy_tui.app.game_controller import GameController
 
 ConfirmationKind = Literal[
-    "end", "take back", "move again", "go on", "card of another", "claim of another", "claim away"
+    "end",
+    "take back",
+    "move again",
+    "go on",
+    "card of another",
+    "claim of another",
+    "claim with another",
+    "claim away",
 ]
 
 
@@ -19,7 +26,8 @@ ConfirmationKind = Literal[
 class Confirmation:
     """A question to staff before a command.
 
-    `about` is the label of the call that it takes back, or the number of the card that it is about.
+    `about` is the label of the call that it takes back, or the number of the card that it is about;
+    `known` is the number of another card that the person has.
     `people` are the ids of the person whom the command names, and of the card's owner if that is
     another person. `calling` is the label of a number that is being called meanwhile.
     """
@@ -29,6 +37,7 @@ class Confirmation:
     about: str = ""
     people: tuple[str, ...] = ()
     calling: str = ""
+    known: str = ""
 
 
 def needed_confirmation(command: GameCommand, control: GameController) -> Confirmation | None:
@@ -36,7 +45,8 @@ def needed_confirmation(command: GameCommand, control: GameController) -> Confir
 
     What ends a game or takes back a call cannot be undone. To go on needs a question only if the
     robot was stopped, or if the program paused the game and not staff. A card needs one if another
-    person has it, a claim also if its person is away: a mistyped number is told to everybody.
+    person has it, a claim also if its person is away or has another card: a mistyped number is told
+    to everybody.
     """
     match command:
         case EndGame() if not control.supervision.over:
@@ -65,6 +75,10 @@ def _about_claim(claim: ClaimCard, control: GameController) -> Confirmation | No
     world = control.plan.world
     if asked is not None or world is None:
         return asked
+    known = world.known_cards.get(claim.person, claim.card)
+    if known != claim.card:
+        person = (claim.person,)
+        return Confirmation("claim with another", claim, str(claim.card), person, known=str(known))
     claims = claim.person or world.holder(claim.card)
     if claims not in world.away:
         return None

@@ -62,6 +62,13 @@ def confirmation_words(asked: Confirmation, name: Callable[[str], str]) -> Confi
                 f"check it for {people[0]}",
                 "leave it",
             )
+        case "claim with another":
+            return ConfirmationWords(
+                f"{people[0]} has card {asked.known}. Is card {asked.about} theirs, too?",
+                f"If not: {people[0]}'s card is {asked.known}, and you may have mistyped it.",
+                f"check card {asked.about}",
+                "leave it",
+            )
         case "claim away":
             return ConfirmationWords(
                 f"Card {asked.about} is {people[0]}'s, who is not here. Check it?",

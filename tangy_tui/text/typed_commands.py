@@ -19,9 +19,15 @@ SOMEBODY_NEW = "somebody new", "Enter, and type the name"
 NOBODY_KNOWS = "nobody", "I do not know", "Tangy checks the card all the same"
 
 
-def whose_words(card: int) -> str:
-    """Ask whose card is to be checked."""
-    return f"Whose card is {card}?"
+def whose_words(card: int, *, all_known: bool) -> str:
+    """Ask whose card is to be checked; `all_known`: everybody here has another card."""
+    nobody = f"Nobody here has card {card}, as far as Tangy knows. "
+    return f"{nobody if all_known else ''}Whose card is {card}?"
+
+
+def has_card_words(card: int | None) -> str:
+    """Tell which card a person has; "" if it is not known."""
+    return "" if card is None else f"has card {card}"
 
 
 def example_words(rules: GameRules) -> str:

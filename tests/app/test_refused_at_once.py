@@ -10,9 +10,11 @@ import pytest
 
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.staff_records import StaffAction
+from tangy_tui.app.confirmations import needed_confirmation
 from tangy_tui.app.game_commands import ClaimCard, ComesIn, GoesAway, HasCard
 from tangy_tui.app.staff_notes import REFUSALS, DoneKind, NoteKind, StaffNote
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.confirmations import confirmation_words
 from tests.app.test_interruption import Robot
 from tests.app.test_planned_games import Planned
 
@@ -48,6 +50,21 @@ def test_a_live_claim_for_a_card_of_nobody_is_refused_once_all_cards_are_known(
     assert robot.control.refuses(ClaimCard(200)) == StaffNote("whose card", "200", "31, 32, 33, 34")
     assert robot.control.refuses(ClaimCard(200, "user1")) is None  # staff say whose it is
     assert robot.control.refuses(ClaimCard(31)) is None
+    workspace.close()
+
+
+def test_a_claim_for_a_person_who_has_another_card_is_asked_about(taught: Path) -> None:
+    workspace = Workspace(taught)
+    robot = Robot(workspace)
+    for card, person in enumerate(robot.world.people, 31):
+        robot.world.cards.dealt.give(person, card)
+    asked = needed_confirmation(ClaimCard(87, "user1"), robot.control)
+    assert asked is not None
+    words = confirmation_words(asked, workspace.name)
+    name = workspace.name("user1")
+    assert words.question == f"{name} has card 31. Is card 87 theirs, too?"
+    assert needed_confirmation(ClaimCard(31, "user1"), robot.control) is None
+    assert needed_confirmation(ClaimCard(0, "user1"), robot.control) is None
     workspace.close()
 
 

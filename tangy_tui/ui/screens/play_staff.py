@@ -49,16 +49,15 @@ from tangy_tui.text.typed_commands import (
     CLAIM,
     IS_AWAY,
     IS_HERE,
-    NOBODY_KNOWS,
     SOMEBODY_NEW,
     TITLE,
     WHO_IS_HERE,
     claim_words,
     example_words,
-    whose_words,
 )
 from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.base import perform
+from tangy_tui.ui.claiming import ask_whose
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
@@ -320,10 +319,10 @@ class PlayStaff(PlayPanels):
 
     async def _ask_whose(self, claim: ClaimCard, people: Sequence[str]) -> None:
         """Ask whose card is to be checked, as nobody knows it; Esc checks nothing."""
-        options = [Option(person, self._workspace.name(person)) for person in people]
-        dialog = ChooseDialog(whose_words(claim.card), [*options, Option(*NOBODY_KNOWS)])
-        if (person := await self.app.push_screen_wait(dialog)) is not None:
-            self.do_sure(claim if person == NOBODY_KNOWS[0] else replace(claim, person=person))
+        name = self._workspace.name
+        whose = await ask_whose(self.app, self.control.plan, claim, people, name)
+        if whose is not None:
+            self.do_sure(whose)
 
     def _refused(self) -> bool:
         """Return whether a STOP or a question has to be handled first, and tell so."""
