@@ -153,12 +153,7 @@ class PlayScreen(PlayStaff):
             self._do(GoOn())
             self.run_worker(self._play(), name="game", exclusive=True)
         else:
-            self._tell_now(text.following_words(self._to_follow), "dim")
-
-    @property
-    def _to_follow(self) -> int:
-        """How many games follow the present one."""
-        return self.games - self.tally.games - 1
+            self._tell_now(text.following_words(self.games - self.tally.games - 1), "dim")
 
     def action_leave(self) -> None:
         """Go back by one step, give up a question, or leave; in mid-game ask first."""
@@ -174,7 +169,7 @@ class PlayScreen(PlayStaff):
     async def _leave(self) -> None:
         """Ask whether to leave in mid-game; the game waits, which is no pause of staff."""
         self._leaving = True
-        detail = f"{self._leave_detail()} {text.dropped_words(self._to_follow)}".strip()
+        detail = self._leave_detail(self.games - self.tally.games - 1)
         dialog = ConfirmDialog(text.LEAVE, detail, yes="leave", no="go on")
         with self._holding() as answered:
             leaves = await self.app.push_screen_wait(dialog)

@@ -31,6 +31,7 @@ from tangy_tui.text.games import (
     REPORT_AT_END,
     REPORT_AT_HOME,
     SEEN,
+    dropped_words,
 )
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.register import staff_names
@@ -188,10 +189,10 @@ class PlayPanels(TangyScreen[Tally]):
         report = REPORT_AT_HOME if self._leads_home else REPORT_AT_END
         return ViewSource(world, self.control, self.minutes, name, self.picture.said, report)
 
-    def _leave_detail(self) -> str:
-        """Tell what happens if staff leave in the middle of a game."""
+    def _leave_detail(self, follow: int) -> str:
+        """Tell what happens if staff leave in the middle of a game, which some were to follow."""
         report = REPORT_AT_HOME if self._leads_home else REPORT_AFTER_LEAVING
-        return LEAVE_DETAIL.format(report=report)
+        return f"{LEAVE_DETAIL.format(report=report)} {dropped_words(follow)}".strip()
 
     @property
     def _leads_home(self) -> bool:
