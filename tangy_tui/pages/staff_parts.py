@@ -10,6 +10,7 @@ from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.page import heading, paragraph, table
 from tangy_tui.text import player_facts as players
 from tangy_tui.text import report as say
+from tangy_tui.text import staff_report as staff
 from tangy_tui.text.sessions import status_words
 from tangy_tui.text.times import day_and_time, time_of_day
 
@@ -81,9 +82,9 @@ def game_part(replay: GameReplay) -> str:
 
 def staff_part(session: Session) -> Iterator[str]:
     """List the actions of staff, with times."""
-    rows = say.staff_rows(session.replays, session.name)
-    yield heading(say.STAFF)
-    yield table(say.STAFF_COLUMNS, rows) if rows else paragraph(say.NO_STAFF)
+    rows = staff.staff_rows(session.replays, session.name)
+    yield heading(staff.STAFF)
+    yield table(staff.STAFF_COLUMNS, rows) if rows else paragraph(staff.NO_STAFF)
 
 
 def faults_part(session: Session) -> Iterator[str]:

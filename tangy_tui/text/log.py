@@ -28,13 +28,13 @@ from tangy_tui.text.report import (
     fault_outcome,
     how_long_words,
     quiet_words,
-    staff_action_lines,
 )
 from tangy_tui.text.results import progress_line, response_line
 from tangy_tui.text.session_page import CARE, HOW_LONG, NOBODY_NAMED, RESPONDED
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.situations import addressed_step, reason_of
 from tangy_tui.text.staff_actions import action_line, chosen_words, with_behaviour
+from tangy_tui.text.staff_report import staff_action_lines
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
 

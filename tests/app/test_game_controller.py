@@ -42,7 +42,7 @@ from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.replay import read_replays
 from tangy_tui.text.log import replay_lines
-from tangy_tui.text.report import staff_rows
+from tangy_tui.text.staff_report import staff_rows
 from tests.hw.links import FakeLink
 from tests.support.live_worlds import live_world
 

@@ -44,7 +44,8 @@ from tangy_tui.pages.session import session_page
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import moment_lines, replay_lines, session_lines
-from tangy_tui.text.report import changes_lines, staff_rows
+from tangy_tui.text.report import changes_lines
+from tangy_tui.text.staff_report import staff_rows
 from tangy_tui.ui.screens.play_view import ViewSource, next_line
 
 

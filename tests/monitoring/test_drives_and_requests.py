@@ -18,7 +18,7 @@ from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.replay import read_replays
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.watch import MOST_CUT_SHORT
-from tangy_tui.text.report import staff_rows
+from tangy_tui.text.staff_report import staff_rows
 from tests.hw.links import FakeLink
 from tests.support.live_worlds import live_world
 

@@ -1,0 +1,92 @@
+"""Words for what staff did in a game or session, with times and names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import datetime, timedelta
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.game_records import MoveKind
+from tangy_profiles.game_world import SIMULATED
+from tangy_tui.monitoring.done import Done
+from tangy_tui.monitoring.fault import Moved
+from tangy_tui.monitoring.replay import GameReplay, Moment, Noted
+from tangy_tui.monitoring.session import Session
+from tangy_tui.text.situations import Name
+from tangy_tui.text.staff_actions import by_staff, chosen_words, did_words, with_behaviour
+from tangy_tui.text.times import time_of_day
+
+STAFF = "What staff did"
+STAFF_COLUMNS = ("when", "who", "what")
+NO_STAFF = "Staff did not step in."
+LONGEST_STEP = 3600.0
+"""No behaviour takes longer, in s."""
+STAFF_MOVES: Mapping[MoveKind, str] = {
+    "acknowledged": "saw",
+    "expert called": "called the expert",
+    "taught": "said what to do",
+    "accepted": "said that all was well",
+    "cleared": "cleared it",
+    "given up": "ended the game",
+}
+"""Words for the actions of staff about a fault."""
+
+
+def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
+    """Return the actions of staff: local time, who, and what."""
+    rows: list[tuple[str, str, str]] = []
+    last = ("", "")  # who did the last row, and whether it set the pace
+    for replay in replays:
+        for at, who, words, paced in sorted(_done_by_staff(replay, name), key=lambda one: one[0]):
+            if paced and last == (who, "pace"):
+                rows.pop()  # keys change it step by step: the last one counts
+            last = (who, "pace" if paced else "")
+            rows.append((time_of_day(at.isoformat()), who, words))
+    return rows
+
+
+def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, str, str, bool]]:
+    """Yield when staff did something in a game, who, what, and whether it set the pace."""
+    answered = ("", "")  # the answer that the next behaviour carries out, and for whom
+    for moment in replay.moments:
+        what, at = moment.what, datetime.fromisoformat(moment.at)
+        if (told := _staff_words(moment, replay.activity, name)) is not None:
+            yield at, *told, isinstance(what, Noted) and what.did == "pace"
+        if isinstance(what, Moved) and what.move.answer:
+            answered = (what.move.answer, what.move.target)
+        elif isinstance(what, Noted) and what.did == "answered":
+            answered = (what.detail, what.person)
+        elif isinstance(what, Done) and what.teacher:
+            whom = what.target or ""
+            if answered != (what.behaviour, whom):  # after staff took over, in an older log
+                words = chosen_words(replay.activity, what.behaviour, whom, name)
+                yield at - _lasted(what, replay), what.teacher, words, False
+            answered = ("", "")
+
+
+def _lasted(done: Done, replay: GameReplay) -> timedelta:
+    """Return how long a behaviour took by the time of day; zero if the log cannot tell."""
+    seconds = done.over - done.begun
+    real = replay.game.world != SIMULATED and 0.0 <= seconds <= LONGEST_STEP
+    return timedelta(seconds=seconds if real else 0.0)
+
+
+def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple[str, str] | None:
+    what = moment.what
+    if isinstance(what, Noted):
+        return (
+            (what.by, did_words(with_behaviour(what, activity), name)) if by_staff(what) else None
+        )
+    if not isinstance(what, Moved) or not what.move.by or what.move.kind not in STAFF_MOVES:
+        return None
+    move, fault = what.move, what.fault
+    if move.answer:
+        return move.by, chosen_words(activity, move.answer, move.target, name)
+    return move.by, f"{STAFF_MOVES[move.kind]}: {fault.name}"
+
+
+def staff_action_lines(session: Session) -> Iterator[str]:
+    """List what staff did, with times and names."""
+    rows = staff_rows(session.replays, session.name)
+    yield f"{STAFF}:" if rows else NO_STAFF
+    yield from (f"  {when}  {who}: {what}" for when, who, what in rows)
