@@ -6,7 +6,7 @@ It is derived from the log. Times are in s since the game began.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from tangy_profiles.activity import Activity
@@ -30,19 +30,25 @@ def visiting(replays: Iterable[GameReplay]) -> tuple[tuple[str, ...], tuple[str,
     return tuple(goes), tuple(stays)
 
 
+LEAST_WAIT = 1.0
+"""Who asked less than so many s before the end of a game did not wait."""
+
+
 @dataclass(slots=True)
 class Attention:
     """The attention to one person in one game or several.
 
     `waits` are the times in s from each request until Tangy arrived or the request was closed;
-    `open` are those of requests still open at the end. `seconds` is Tangy's time with the person,
-    `helped` counts its behaviours there, and `won` the person's wins. `could_visit`: Tangy visits
-    people in that game, or in one of several.
+    `open` are those of requests still open at the end. `spans` are the begin and end of all of
+    these in s since the game began; those of several games are not added up. `seconds` is Tangy's
+    time with the person, `helped` counts its behaviours there, and `won` the person's wins.
+    `could_visit`: Tangy visits people in that game, or in one of several.
     """
 
     id: str
     waits: list[float] = field(default_factory=list)
     open: list[float] = field(default_factory=list)
+    spans: list[tuple[float, float]] = field(default_factory=list)
     visits: int = 0
     seconds: float = 0.0
     last_visit: float | None = None
@@ -54,6 +60,11 @@ class Attention:
     def never_visited(self) -> bool:
         """Whether Tangy could have visited the person, and did not."""
         return self.could_visit and not self.visits
+
+    def open_in(self, found: Mapping[str, Attention]) -> list[float]:
+        """Return the waits (s) that were open at the end of a game, without the shortest."""
+        one = found.get(self.id)
+        return [] if one is None else [wait for wait in one.open if wait >= LEAST_WAIT]
 
     @property
     def requests(self) -> int:
@@ -102,6 +113,7 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
         _count_requests(found, asked, done, requests[done.number])
     for person, since in asked.items():
         found[person].open.append(max(0.0, replay.seconds - since))
+        found[person].spans.append((since, max(since, replay.seconds)))
     for person in replay.game.away & found.keys():
         if not (found[person].requests or found[person].visits):
             del found[person]
@@ -166,7 +178,9 @@ def _count_requests(
         waits = user.id in waiting and done.after.place != user.id
         closed_at_once = done.after.closed == user.id and user.request == "AR"
         if user.id in asked and (not waits or closed_at_once):
-            found[user.id].waits.append(max(0.0, done.over - asked.pop(user.id)))
+            since = asked.pop(user.id)
+            found[user.id].waits.append(max(0.0, done.over - since))
+            found[user.id].spans.append((since, max(since, done.over)))
         if waits and user.id not in asked and not _is_with(done, user.id):
             asked[user.id] = done.over
 

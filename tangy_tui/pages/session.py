@@ -89,7 +89,7 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 
 KEY = (
     ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', say.VISIT),
-    ('<rect class="asks" x="1" y="6" width="18" height="4"/>', say.ASKS),
+    ('<rect class="asks" x="1" y="6" width="18" height="4"/>', say.WAITS),
     ('<circle class="yes" cx="10" cy="8" r="5"/>', RESULT_WORDS["complied"]),
     ('<circle class="late" cx="10" cy="8" r="4.4"/>', RESULT_WORDS["late"]),
     ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', RESULT_WORDS["refused"]),

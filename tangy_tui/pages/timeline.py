@@ -7,6 +7,7 @@ from html import escape
 from itertools import groupby
 from typing import NamedTuple
 
+from tangy_tui.monitoring.attention import attention_in
 from tangy_tui.monitoring.fault import ENDINGS, OVER, Fault, Moved
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay
 from tangy_tui.monitoring.standstills import halts_in
@@ -93,10 +94,11 @@ def timeline(
         _label("to everybody", top_ticks + TICKS / 2),
         *_to_all(replay, scale, top_ticks),
     ]
+    waits = _waits(replay, scale)
     for place, person in enumerate(people):
         top = top_people + LANE * place
         parts.append(_label(names.get(person, person), top + LANE / 2))
-        parts += _person(replay, person, scale, top)
+        parts += _person(replay, person, scale, top, waits[person])
     parts.append(_label("faults", top_faults + MARKS / 2))
     if not spans:
         parts.append(_text(LEFT, top_faults + MARKS / 2, "none", "dim"))
@@ -165,7 +167,8 @@ def _stages(
 def _to_all(replay: GameReplay, scale: Scale, top: float) -> Iterator[str]:
     """Mark behaviours for the group: a tick for each call, a taller one for others."""
     for done in replay.done:
-        if done.target is not None or done.after.place in replay.game.people:
+        with_one = done.target is not None or done.after.place in replay.game.people
+        if with_one and not done.draws:  # staff may have a number called during a visit
             continue
         x = scale.x(done.begun if scale.timed else done.number)
         rise = 5 if done.draws else 10
@@ -177,16 +180,32 @@ def _to_all(replay: GameReplay, scale: Scale, top: float) -> Iterator[str]:
         )
 
 
-def _person(replay: GameReplay, person: str, scale: Scale, top: float) -> Iterator[str]:
+def _waits(replay: GameReplay, scale: Scale) -> dict[str, list[Span]]:
+    """Return when each person waited, as the table of people counts it: until Tangy arrived."""
+    people = replay.game.people
+    if scale.timed:
+        found = attention_in(replay)
+        return {p: [Span(*one) for one in found[p].spans] if p in found else [] for p in people}
+    requests = replay.requests
+
+    def waits(person: str) -> list[Span]:
+        asks = {n for n, waiting in requests.items() if person in waiting}
+        found = _spans(replay, scale, lambda d: d.number in asks and d.after.place != person)
+        return list(found)
+
+    return {person: waits(person) for person in people}
+
+
+def _person(
+    replay: GameReplay, person: str, scale: Scale, top: float, waits: Sequence[Span]
+) -> Iterator[str]:
     middle = top + LANE / 2
     yield f'<line class="base" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{middle}" y2="{middle}"/>'
-    requests = replay.requests
-    asking = _spans(replay, scale, lambda done: person in requests[done.number])
-    for span in asking:
+    for span in waits:
         x, end = scale.x(span.begun), scale.x(span.over)
         yield (
             f'<rect class="asks" x="{x:.1f}" y="{middle - 2}" width="{max(2.0, end - x):.1f}" '
-            f'height="4"><title>asks for help</title></rect>'
+            f'height="4"><title>waits for help</title></rect>'
         )
     for span in _spans(replay, scale, lambda done: done.after.place == person):
         x, end = scale.x(span.begun), scale.x(span.over)

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
-from tangy_tui.monitoring.attention import Attention, Call, attention, calls_in, visiting
+from tangy_tui.monitoring.attention import (
+    LEAST_WAIT,
+    Attention,
+    Call,
+    attention,
+    attention_in,
+    calls_in,
+    visiting,
+)
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay
@@ -37,6 +45,7 @@ TAKEN_BACK, BACK = "crossed out: taken back", "taken back"
 FAULTS_SHORT = "What went wrong"
 FAULT_COLUMNS = ("when", "what", "what came of it")
 NOT_REACHED = "not reached"
+ASKED_LAST = "asked as the game ended"
 FEW_WAITS = 3
 """Up to so many waits are told one by one."""
 LONG_WAIT = 300.0  # s from which a wait needs attention
@@ -92,10 +101,14 @@ def waited_words(one: Attention) -> str:
     if not one.requests:
         return "\N{EN DASH}"
     if one.requests <= FEW_WAITS:  # "and" would make one time of two
-        ended = [*map(length, one.waits), *(f"{length(wait)} ({NOT_REACHED})" for wait in one.open)]
-        return ", then ".join(ended)
+        return ", then ".join([*map(length, one.waits), *map(_open_words, one.open)])
     more = f"; {often(len(one.open))} {NOT_REACHED}" if one.open else ""
     return usual_words([*one.waits, *one.open]) + more
+
+
+def _open_words(wait: float) -> str:
+    """Tell how long a person waited in vain, unless they asked just before the game ended."""
+    return f"{length(wait)} ({NOT_REACHED})" if wait >= LEAST_WAIT else ASKED_LAST
 
 
 def usual_words(waits: Sequence[float]) -> str:
@@ -184,6 +197,8 @@ def care_lines(
 ) -> list[str]:
     """Name the people who need attention: still waiting, after a long wait, or never visited.
 
+    People still wait only if they did at the end of the last game.
+
     Args:
         found: the attention to each person.
         name: returns people's names.
@@ -196,11 +211,13 @@ def care_lines(
         where = f" in {listed(goes)} (in {listed(stays)} it goes to nobody)" if stays else ""
         lines.append(f"Tangy never went to {some_of(never)}{where}.")
     waiting, waited = dict[str, list[str]](), dict[str, list[str]]()
-    for one in sorted(people, key=lambda one: -max(one.open or one.waits, default=0.0)):
-        if one.open:
-            waiting.setdefault(length(max(one.open)), []).append(name(one.id))
-        elif one.waits and max(one.waits) > LONG_WAIT:
-            waited.setdefault(length(max(one.waits)), []).append(name(one.id))
+    at_end = attention_in(replays[-1]) if len(replays) > 1 else {one.id: one for one in people}
+    every = [(one, one.open_in(at_end), [*one.waits, *one.open]) for one in people]
+    for one, still, ended in sorted(every, key=lambda each: -max(each[1] or each[2], default=0.0)):
+        if still:
+            waiting.setdefault(length(max(still)), []).append(name(one.id))
+        elif ended and max(ended) > LONG_WAIT:
+            waited.setdefault(length(max(ended)), []).append(name(one.id))
     for what, groups in (("Still waiting at the end", waiting), ("Waited long for help", waited)):
         if groups:
             lines.append(f"{what}: {_waits_words(groups)}.")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.session import Session
 
 VISIT = "Tangy is with them"
-ASKS = "asks for help"
+WAITS = "waits for help"
 TICKS = "number called, anything else"
 FAULT, CRITICAL_FAULT = "fault", "critical fault"
 STOOD_STILL = "Tangy stood still"

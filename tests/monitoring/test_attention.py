@@ -20,7 +20,7 @@ from tangy_tui.app.game_commands import ComesIn, GoesAway
 from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.attention import Attention, attention_in, calls_in
+from tangy_tui.monitoring.attention import Attention, attention, attention_in, calls_in
 from tangy_tui.monitoring.data_tables import HEAD, TABLES
 from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.games import Game, read_games
@@ -140,6 +140,28 @@ def test_the_summary_lists_waits_longest_first() -> None:
         "Still waiting at the end: Cy, 2 min; Bob, 1 min.",
         "Waited long for help: Ann, 7 min.",
     ]
+
+
+def test_only_who_waits_at_the_end_of_the_session_is_told_as_still_waiting() -> None:
+    asking = state(FRONT, ["ann"])
+    waits = replay_of(state(FRONT), asking, asking, asking)
+    fine = replay_of(state(FRONT), state(FRONT), state("bob", ["bob"]))
+
+    def told(*replays: GameReplay) -> list[str]:
+        found = attention(replays).values()
+        return [line for line in care_lines(found, str, replays) if "never" not in line]
+
+    assert told(fine, waits) == ["Still waiting at the end: ann, 20 s."]
+    assert told(waits, fine) == []
+    long = replace(waits, seconds=500.0)
+    assert told(long, fine) == ["Waited long for help: ann, 8 min."]
+
+
+def test_who_asks_as_the_game_ends_is_not_told_as_waiting() -> None:
+    ann = Attention("Ann", waits=[30.0], open=[0.2], visits=1, seconds=5.0)
+    assert care_lines([ann], str) == []
+    told = attention_lines([ann], str)[-1]
+    assert told.endswith("waited: 30 s, then asked as the game ended; 1 visit, 5 s in all")
 
 
 def test_what_to_look_after_names_a_few_of_many_people_and_counts_the_others() -> None:
