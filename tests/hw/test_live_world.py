@@ -540,14 +540,13 @@ def test_looking_again_replans_and_spins_only_for_a_lost_pose(
     assert link.told[-1] == "release"
 
 
-def test_the_recovery_time_includes_the_standstill(world: LiveWorld, link: FakeLink) -> None:
+def test_the_recovery_time_leaves_out_the_standstill(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
-    link.time += 60.0  # the game was paused: that time does not count
     world.recover(Remedy("halt", "laser-disconnected", "laser"))
-    link.time += 90.0  # meanwhile a person plugged a cable in again
-    assert 90.0 <= world.recover(Remedy("call expert", "laser-disconnected", "laser")) < 95.0
+    link.time += 90.0  # it passes on the robot's clock, and counts there
+    assert world.recover(Remedy("call expert", "laser-disconnected", "laser")) < 5.0
     link.time += 30.0
-    assert 30.0 <= world.recover(Remedy("look again", "laser-disconnected", "laser")) < 40.0
+    assert world.recover(Remedy("look again", "laser-disconnected", "laser")) < 10.0
     assert world.recover(Remedy("look again", "laser-disconnected", "laser")) < 10.0
     world.recover(Remedy("resume", "laser-disconnected", "laser"))
     link.time += 60.0
