@@ -69,11 +69,14 @@ class SetUp(Readiness):
         set_up._seat_as_before()
         return set_up
 
-    def offer_last_plan(self) -> None:
-        """Offer what staff chose last for this activity; who was away only on the same day."""
+    def offer_last_plan(self) -> bool:
+        """Offer what staff chose last for this activity; who was away only on the same day.
+
+        Return whether there was a game.
+        """
         last = last_plan(self.workspace.store, self.workspace.activity.name)
         if last is None:
-            return
+            return False
         rules = self.workspace.activity.rules
         self.patterns = [one.name for one in rules.patterns if one.name in last.patterns]
         self.patterns.sort(key=last.patterns.index)
@@ -83,6 +86,7 @@ class SetUp(Readiness):
         if last.pace and not self._pace_given:
             self.pace = last.pace
         self.away = {person for person in last.absent if person in self.seats}
+        return True
 
     # ----------------------------------------------------------------------------- the choices
 

@@ -9,6 +9,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.app.readiness import Check, CheckName
 from tangy_tui.app.set_up import Choice, SetUp
 from tangy_tui.text.missing_devices import missing_words
+from tangy_tui.text.numbers import listed
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.rooms import room_words
 
@@ -304,10 +305,10 @@ def no_seat_words(seats: int) -> str:
 
 def patterns_to_choose(names: Iterable[str]) -> str:
     """List the patterns to choose from."""
-    listed = ", ".join(names)
-    if not listed:
+    labels = ", ".join(names)
+    if not labels:
         return "This activity has no patterns to choose."
-    return f"You can play for: {listed}. Type: play for, and one or more of them."
+    return f"You can play for: {labels}. Type: play for, and one or more of them."
 
 
 def lines_anyway(not_ready: Sequence[Check]) -> str:
@@ -357,6 +358,14 @@ def lines_of(setup: SetUp) -> list[str]:
         *_game_lines(setup),
         *missing_words(setup.workspace.robot, setup.workspace.activity),
     ]
+
+
+def as_before_words(setup: SetUp) -> str:
+    """Tell what a game takes from the last one if nobody sets it up."""
+    name = staff_names(setup.workspace.name)
+    away = [name(person) for person in setup.seats if person in setup.away]
+    here = f"Not here: {listed(away)}." if away else "Everybody is here."
+    return " ".join(("As you left your last game.", here, *_game_lines(setup)))
 
 
 def _game_lines(setup: SetUp) -> list[str]:

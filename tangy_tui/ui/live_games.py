@@ -79,13 +79,12 @@ async def play_live(
 
     workspace = program.workspace
     setup = SetUp.of(workspace, pace)
-    if set_up:
-        setup.offer_last_plan()
+    as_before = past is None and setup.offer_last_plan()
     if past is not None:  # the set-up has seated people as they sat when the game began
         workspace.gather(past.beginning.people)
     played = await _play(
         program, opening, policy, games=games, seed=seed, teacher=teacher, past=past,
-        setup=setup, set_up=set_up,
+        setup=setup, set_up=set_up, as_before=as_before and not set_up,
     )  # fmt: skip
     while played is not None and played.control.joined:
         played.control.admit_no_more()
@@ -112,10 +111,12 @@ async def _play(
     past: PastGame | None,
     setup: SetUp,
     set_up: bool = False,
+    as_before: bool = False,
     before: LiveScreen | None = None,
 ) -> LiveScreen | None:
     """Play with the robot on; return the screen, whose game may only be interrupted.
 
+    With `as_before`, it tells what the game takes from the last one.
     `before` is the screen of a game that a person has joined: it goes on as it was.
     """
     from tangy_tui.app.switching_on import SwitchingOn
@@ -136,6 +137,7 @@ async def _play(
         from tangy_tui.app.joining import Admission, carry_over
         from tangy_tui.learning.policies import load_policy
         from tangy_tui.text.calls import REHEARSAL
+        from tangy_tui.text.set_up import as_before_words
         from tangy_tui.ui.screens.live import LiveScreen
 
         if workspace.profile != activity:
@@ -151,6 +153,7 @@ async def _play(
         screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
         screen.control.admission = Admission(workspace, world)
         screen.closes = robot.close
+        screen.takes = as_before_words(setup) if as_before else ""
         if before is not None:
             workspace.door.attach(screen.control)
             screen.control.follow(before.control)

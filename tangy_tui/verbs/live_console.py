@@ -24,6 +24,7 @@ from tangy_tui.text.live_games import part_words, report_words
 from tangy_tui.text.live_news import live_lines
 from tangy_tui.text.missing_devices import missing_words, staff_needed
 from tangy_tui.text.outcomes import faults_logged, score_lines
+from tangy_tui.text.set_up import as_before_words
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.verbs.common import as_given, print_json, print_line
 from tangy_tui.verbs.live_lines import LiveLines
@@ -51,6 +52,8 @@ class GamesWithoutScreen:
         self._opening = games.opening(games.seed)
         self._policy = games.policy
         self._set_up: SetUpLines | None = None
+        self._as_before: SetUp | None = None
+        """The choices of the last game, if it is played again without a set-up."""
         self._console: LiveLines | None = None
         robot, activity = self._workspace.robot, self._workspace.activity
         sees = reads_cards(robot) or not activity.deck.columns
@@ -69,10 +72,13 @@ class GamesWithoutScreen:
     def _sets_up(self) -> bool:
         """Let staff at the lines set a new game up; return whether they play."""
         given, workspace = self._given, self._workspace
-        if given.plain_lines and not given.begin and self._games.past is None and is_typed(None):
+        if given.plain_lines and self._games.past is None and is_typed(None):
             setup = SetUp.of(workspace, given.pace)
-            setup.offer_last_plan()
-            self._set_up = SetUpLines(setup, line_reader(None), print_line)
+            known = setup.offer_last_plan()
+            if not given.begin:
+                self._set_up = SetUpLines(setup, line_reader(None), print_line)
+            elif known:
+                self._as_before = setup
         played_before = workspace.profile
         if self._set_up is not None and not self._set_up.run():
             return False
@@ -150,6 +156,9 @@ class GamesWithoutScreen:
             if not lines.begins_anyway(stopped=stopped):
                 return False
             lines.setup.carry_out(world)
+        if (before := self._as_before) is not None:
+            before.carry_out(world)
+            self._note(as_before_words(before))
         return True
 
     def _play_first(self, world: LiveWorld) -> bool:

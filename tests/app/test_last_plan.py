@@ -13,6 +13,7 @@ from tangy_tui.app.game_commands import ComesIn, GoesAway, GoOn, SetPace
 from tangy_tui.app.last_plan import last_plan
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.set_up import as_before_words
 from tests.app.test_interruption import Robot
 
 PLAN = GamePlan(("two lines", "line"), True, True, "", ("user3",), 20.0, 40)
@@ -27,7 +28,7 @@ def data_folder(taught: Path) -> Path:
 def test_without_a_game_the_set_up_offers_its_usual_choices(workspace: Workspace) -> None:
     setup = SetUp.of(workspace)
     before = setup.plan
-    setup.offer_last_plan()
+    assert not setup.offer_last_plan()
     assert setup.plan == before
 
 
@@ -40,8 +41,12 @@ def test_the_set_up_offers_the_last_plan_with_its_changes(workspace: Workspace) 
     for command in (SetPace(15.0), GoesAway("user1"), ComesIn("user3")):
         robot.control.apply(command)
     setup = SetUp.of(workspace)
-    setup.offer_last_plan()
+    assert setup.offer_last_plan()
     assert setup.plan == replace(PLAN, absent=("user1",), pace=15.0)
+    told = as_before_words(setup)
+    away = workspace.name("user1")
+    assert told.startswith(f"As you left your last game. Not here: {away}. Played for: two lines")
+    assert "15 s" in told and "40 minutes" in told
     given = SetUp.of(workspace, 45.0)  # on the command line
     given.offer_last_plan()
     assert given.pace == 45.0

@@ -13,6 +13,7 @@ from textual.app import App
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.live_games import STARTING, starting_again_words
@@ -94,6 +95,22 @@ async def test_the_dialog_tells_until_when_the_robot_stands_still(
         pilot.app.push_screen(dialog)
         await dialog.shown()
         assert until_when.split(". ")[1] in " ".join(pilot.text().replace("│", " ").split())
+
+
+@pytest.mark.slow
+async def test_without_the_set_up_a_game_takes_the_last_plan_and_says_so(
+    run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = GamePlan(("line",), absent=("user3",), pace=20.0, minutes=40)
+    monkeypatch.setattr("tangy_tui.app.set_up.last_plan", lambda store, activity: before)
+    robot = Robot(workspace)
+    async with run(app=program(workspace, policy, robot), size=(120, 40)) as pilot:
+        await switching(pilot, robot)
+        robot.answers.set()
+        await until_shown(pilot, lambda: "As you left your last game." in pilot.text())
+        screen = pilot.app.screen
+        assert isinstance(screen, LiveScreen) and screen.minutes == 40
+        assert screen.control.plan.away == {"user3"} and screen.world.pace == 20.0
 
 
 @pytest.mark.parametrize("key", ["escape", "ctrl+x"])

@@ -95,6 +95,8 @@ class LiveScreen(LiveStaff):
         self.picture.over = self._over_words
         self.closes: Callable[[], object] = lambda: None
         """Switches the robot off; it may be called again."""
+        self.takes = ""
+        """What the game takes from the last one, if nobody set it up."""
         self._seen_doing = ""
         self._frozen = 0.0
         self._tracked = 0.0
@@ -113,6 +115,8 @@ class LiveScreen(LiveStaff):
             # a small window hides the log, and the tablet may have to be connected again
             self.query_one(RoomView).border_subtitle = Content(self.world.link.tablet_page)
         self.set_interval(TRACK_SECONDS, self.track)
+        if self.takes:
+            self.call_after_refresh(self._tell_now, self.takes, "text")
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Disable actions that are not available among people."""
