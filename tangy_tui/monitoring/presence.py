@@ -23,6 +23,11 @@ class Stay:
         """Whether the person was there all the time."""
         return self.since is None and self.until is None
 
+    def at(self, when: datetime) -> bool:
+        """Return whether the person was there at a time within the games."""
+        since = self.since is None or self.since <= when
+        return since and (self.until is None or when <= self.until)
+
     def to_json(self) -> dict[str, Any]:
         """Return the times as `--json` prints them."""
         return {

@@ -10,9 +10,16 @@ from tangy_tui.text.numbers import listed
 if TYPE_CHECKING:
     from tangy_tui.monitoring.games import Game
 
-TO_ITS_END = "played to its end"
+TO_ITS_END = "played to the end"
 ENDED_EARLY = "ended early: “{due}” was still to come"
 BROKEN_OFF = "it has no end in the log: it is still going on, or the program was broken off"
+
+SEVERAL = (
+    ("It was ", "They were "),
+    ("It has no end in the log: it is", "They have no end in the log: they are"),
+    ("before its end", "before the end"),
+)
+"""What is written otherwise about several games."""
 
 
 def ending_words(game: Game) -> str:
@@ -36,9 +43,17 @@ def all_endings(games: Sequence[Game]) -> str:
     for game in games:
         alike.setdefault(ending_sentence(game), []).append(game.number)
     return " ".join(
-        f"{'Game' if len(numbers) == 1 else 'Games'} {listed(numbers)}: {words}"
+        f"Game {listed(numbers)}: {words}"
+        if len(numbers) == 1
+        else f"Games {listed(numbers)}: {_of_several(words)}"
         for words, numbers in alike.items()
     )
+
+
+def _of_several(words: str) -> str:
+    for one, several in SEVERAL:
+        words = words.replace(one, several)
+    return words
 
 
 def game_document(game: Game) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from tangy_profiles.game_world import GameWorld
 from tangy_tui.monitoring.attention import visiting
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.house import Month, PersonInGame, PersonOverTime, RobotLog
+from tangy_tui.monitoring.presence import stays
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.report import (
@@ -23,6 +24,8 @@ from tangy_tui.text.report import (
     visits_words,
     waited_words,
 )
+from tangy_tui.text.results import ways_of
+from tangy_tui.text.taking_part import stay_words
 from tangy_tui.text.times import length, on_day
 
 NOTHING = "\N{EN DASH}"
@@ -38,9 +41,12 @@ WHO_COLUMNS = (
 )  # fmt: skip
 GAMES = "Game by game"
 GAME_COLUMNS = (
-    "when", "what was played", "asked for help", "waited", "visits", "time with Tangy",
+    "when", "what was played", "there", "asked for help", "waited", "visits", "time with Tangy",
     "help given", "did as asked", "won",
 )  # fmt: skip
+ALL_THE_TIME = "all the time"
+NO_VISIT = "none"
+"""Of who was not there all the time: "never" would tell of a person who was forgotten."""
 WORKS = "What works"
 STRATEGY_COLUMNS = ("way of asking", "asked", "did it in time", "did it late", "share in time")
 FAULTS = "What went wrong, and how often"
@@ -129,12 +135,14 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
     """Write one row for each game of a person."""
     for one in games:
         got = one.attention
+        there = stay_words(stays([one.replay]).get(got.id, ()))
         yield (
             on_day(one.at),
             one.replay.title,
+            there or ALL_THE_TIME,
             asked_words(got),
             waited_words(got),
-            visits_words(got),
+            NO_VISIT if there and got.never_visited else visits_words(got),
             time_words(got),
             helped_words(got, filter(None, [one.replay.activity])),
             response_words(one.answers),
@@ -143,16 +151,24 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
 
 
 def strategy_rows(person: PersonOverTime) -> Iterator[tuple[str, ...]]:
-    """Write one row for each strategy: how often it was used, and how often it worked."""
+    """Write one row for each strategy: how often it was used, and how often it worked.
+
+    It has its words of the session's report, and the name by which it is switched off.
+    """
     known = [answer for answer in person.answers if answer.complied is not None]
+    activities = [one.replay.activity for one in person.games]
+    ways = {name: way for one in activities if one is not None for name, way in ways_of(one)}
     used = Counter(answer.strategy for answer in known)
     did = Counter(answer.strategy for answer in known if answer.complied)
     late = Counter(one.strategy for one in known if not one.complied and one.followed)
     for strategy, times in used.most_common():
         yield (
-            strategy, str(times), str(did[strategy]), str(late[strategy]),
+            f"{ways[strategy]} ({strategy})" if strategy in ways else strategy,
+            str(times),
+            str(did[strategy]),
+            str(late[strategy]),
             f"{did[strategy] / times:.0%}",
-        )  # fmt: skip
+        )
 
 
 def fault_rows(games: Sequence[tuple[RobotLog, GameReplay]]) -> Iterator[tuple[str, ...]]:

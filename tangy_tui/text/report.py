@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
 from statistics import median_low
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
 from tangy_tui.monitoring.attention import (
     LEAST_WAIT,
@@ -20,7 +22,8 @@ from tangy_tui.monitoring.attention import (
 )
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
-from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay
+from tangy_tui.monitoring.presence import stays
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.faults import move_words
@@ -272,10 +275,13 @@ def _asked_line(one: Attention, name: Name) -> str:
 
 def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
     """Tell who won early, whom Tangy visited unasked, and how often calls came first."""
-    changes = [one for replay in replays for one in replay.changes]
+    games = list(replays)
+    changes = [one for replay in games for one in replay.changes]
     lines = [
         f"At {time_of_day(moment.at)} {changed_words(change, None, name)}"
-        for moment, change in changes
+        f"{_left_words(replay, moment, change, name)}"
+        for replay in games
+        for moment, change in replay.changes
         if change.what in ("played on", "others first", "all called", "nobody won")
     ]
     visits = Counter(name(change.person) for _, change in changes if change.what == "visit")
@@ -291,6 +297,25 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
             "numbers before it went to the next one."
         )
     return lines
+
+
+def _left_words(replay: GameReplay, won: Moment, change: GameChange, name: Name) -> str:
+    """Tell how a person won who had left: staff had a card checked."""
+    if change.what not in ("played on", "others first"):
+        return ""
+    there = stays([replay]).get(change.person, ())
+    if not there or any(stay.at(datetime.fromisoformat(won.at)) for stay in there):
+        return ""
+    who, checked = name(change.person), ""
+    for moment in replay.moments:
+        if moment is won:
+            break
+        match moment.what:
+            case Noted(did="claim right", person=person, detail=card) if person == change.person:
+                checked = f" Staff had {who}'s card {card} checked."
+            case _:
+                pass
+    return f" {who} had left before.{checked}"
 
 
 def fault_outcome(fault: Fault, status: str) -> str:

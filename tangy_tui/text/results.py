@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_tui.monitoring.people_progress import RESULTS, Attempts, MethodProgress, Progress
@@ -53,13 +53,19 @@ def progress_line(person: Progress) -> str:
 
 def response_line(person: Progress, activities: Iterable[Activity]) -> str:
     """Tell staff what a person did when asked, and how Tangy asked: in words, without numbers."""
-    ways = {name: words for one in activities for name, words in one.strategies.items()}
+    ways = {name: words for one in activities for name, words in ways_of(one)}
     parts = [
-        f"{result_words([one])} (Tangy {ways.get(strategy, f'used {strategy}')})"
+        f"{result_words([one])} ({ways.get(strategy, f'Tangy used {strategy}')})"
         for strategy, one in person.strategies.items()
         if one.used
     ]
     return f"{person.name}: {'; '.join(parts)}"
+
+
+def ways_of(activity: Activity) -> Iterator[tuple[str, str]]:
+    """Yield the ways of asking of an activity with their words for staff."""
+    for name, words in activity.strategies.items():
+        yield name, f"Tangy {words}"
 
 
 def method_words(person: Progress, method: MethodProgress) -> str:

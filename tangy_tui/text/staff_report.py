@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from datetime import datetime, timedelta
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.game_records import MoveKind
+from tangy_profiles.contacts import EXPERT
+from tangy_profiles.game_records import CallMade, MoveKind
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.monitoring.done import Done
 from tangy_tui.monitoring.fault import Moved
@@ -32,6 +33,10 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
+SHOWN_EXPERT = "was shown whom to call"
+"""For "expert called", if Tangy called nobody itself."""
+
+
 def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
     """Return the actions of staff: local time, who, and what."""
     rows: list[tuple[str, str, str]] = []
@@ -47,10 +52,12 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
 
 def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, str, str, bool]]:
     """Yield when staff did something in a game, who, what, and whether it set the pace."""
+    calls = (moment.what for moment in replay.moments)
+    called = {call.fault for call in calls if isinstance(call, CallMade) and call.role == EXPERT}
     answered = ("", "")  # the answer that the next behaviour carries out, and for whom
     for moment in replay.moments:
         what, at = moment.what, datetime.fromisoformat(moment.at)
-        if (told := _staff_words(moment, replay.activity, name)) is not None:
+        if (told := _staff_words(moment, replay.activity, name, called)) is not None:
             yield at, *told, isinstance(what, Noted) and what.did == "pace"
         if isinstance(what, Moved) and what.move.answer:
             answered = (what.move.answer, what.move.target)
@@ -71,7 +78,10 @@ def _lasted(done: Done, replay: GameReplay) -> timedelta:
     return timedelta(seconds=seconds if real else 0.0)
 
 
-def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple[str, str] | None:
+def _staff_words(
+    moment: Moment, activity: Activity | None, name: Name, called: Container[str]
+) -> tuple[str, str] | None:
+    """Return who of the staff did what; `called` are the faults with a call to the expert."""
     what = moment.what
     if isinstance(what, Noted):
         return (
@@ -80,6 +90,8 @@ def _staff_words(moment: Moment, activity: Activity | None, name: Name) -> tuple
     if not isinstance(what, Moved) or not what.move.by or what.move.kind not in STAFF_MOVES:
         return None
     move, fault = what.move, what.fault
+    if move.kind == "expert called" and fault.id not in called:
+        return move.by, f"{SHOWN_EXPERT}: {fault.name}"
     if move.answer:
         return move.by, chosen_words(activity, move.answer, move.target, name)
     return move.by, f"{STAFF_MOVES[move.kind]}: {fault.name}"

@@ -105,6 +105,8 @@ def test_games_that_ended_alike_are_named_together(replays: list[GameReplay]) ->
     played = ending_sentence(one)
     assert all_endings(games) == f"Games 1 and 3: {played} Game 2: It was left before its end."
     assert all_endings([left]) == "Game 2: It was left before its end."
+    two = [left, replace(left, number=3)]
+    assert all_endings(two) == "Games 2 and 3: They were left before the end."
 
 
 def test_a_late_response_is_not_told_as_done_in_time() -> None:

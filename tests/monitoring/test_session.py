@@ -216,7 +216,7 @@ def test_long_reports_list_only_games_with_faults_or_stops(
     told_of = [line.split(" ")[1] for line in lines if line.startswith("Game ")]
     assert told_of == [str(bumpy.number), "3"]
     assert lines[0].startswith(f"{MOST_TOLD + 3} games, ")
-    assert f"{MOST_TOLD + 2} played to its end, 1 stopped before it" in lines[0]
+    assert f"{MOST_TOLD + 2} played to the end, 1 stopped before it" in lines[0]
     assert any(f"The other {MOST_TOLD + 1} games " in line and "log list" in line
                for line in lines)  # fmt: skip
 

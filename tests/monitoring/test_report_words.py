@@ -1,0 +1,76 @@
+"""Reports name times and ways of asking alike, and say what staff and Tangy did."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import cast
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.game_records import CallMade, GameChange, RecoveryEvent
+from tangy_tui.monitoring.attention import Attention
+from tangy_tui.monitoring.fault import Fault, Moved
+from tangy_tui.monitoring.house import PersonInGame, PersonOverTime, RobotLog
+from tangy_tui.monitoring.people_progress import Progress
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Noted
+from tangy_tui.text.house import GAME_COLUMNS, game_rows, strategy_rows
+from tangy_tui.text.report import changes_lines
+from tangy_tui.text.results import response_line
+from tangy_tui.text.staff_report import staff_rows
+from tests.monitoring.test_taking_part import ONE, moment, moves
+
+NAMES = {"user1": "Ada", "user2": "Bob"}
+
+
+def row_of(replay: GameReplay, got: Attention) -> Mapping[str, str]:
+    log = RobotLog("r", "r", (replay,), NAMES, frozenset(), {})
+    (row,) = game_rows([PersonInGame(log, replay, got, ())])
+    return dict(zip(GAME_COLUMNS, row, strict=True))
+
+
+def test_the_report_of_a_person_says_when_they_were_there() -> None:
+    replay = moves((4, "left", "user1"))
+    left, stayed = (row_of(replay, Attention(person)) for person in ("user1", "user2"))
+    assert left["there"].startswith("until ") and left["visits"] == "none"
+    assert (stayed["there"], stayed["visits"]) == ("all the time", "never")
+
+
+def test_ways_of_asking_have_the_same_names_in_both_reports() -> None:
+    bingo = load_activity("bingo")
+    replay = GameReplay(ONE, activity=bingo)
+    way = next(iter(bingo.strategies))
+    answer = AnsweredRequest("u", "user1", way, complied=True, followed=True, took=1.0)
+    log = RobotLog("r", "r", (replay,), NAMES, frozenset(), {})
+    one = PersonInGame(log, replay, Attention("user1"), (answer,))
+    ((told, *_),) = strategy_rows(PersonOverTime("Ada", [one]))
+    tried = SimpleNamespace(used=1, complied=1, late=0, refused=0, void=0, awaited=0)
+    person = cast(Progress, SimpleNamespace(name="Ada", strategies={way: tried}))
+    assert told.startswith("Tangy ") and told.endswith(f" ({way})")
+    assert told.removesuffix(f" ({way})") in response_line(person, [bingo])
+
+
+def test_the_report_says_how_a_person_won_who_had_left() -> None:
+    replay = moves((4, "left", "user1"))
+    won = GameChange(game="g", what="played on", person="user1", steps=1)
+    replay.moments = [
+        moment(5, Noted("claim right", "Nina", person="user1", detail="111")),
+        moment(6, won),
+    ]
+    (line,) = changes_lines([replay], NAMES.__getitem__)
+    assert line.endswith("Ada had left before. Staff had Ada's card 111 checked.")
+    back = moves((4, "left", "user1"), (5, "came", "user1"))
+    back.moments = [moment(6, won)]
+    (line,) = changes_lines([back], NAMES.__getitem__)
+    assert line.endswith("Ada has won. The game goes on.")
+
+
+def test_the_expert_counts_as_called_only_if_tangy_called() -> None:
+    fault = cast(Fault, SimpleNamespace(id="f1", name="Emergency stop pressed"))
+    seen = moment(1, Moved(fault, RecoveryEvent("expert called", 3.0, by="Nina")))
+    call = CallMade(game="g", fault="f1", role="expert", way="command", stage="tried")
+    shown, called = GameReplay(ONE, [seen]), GameReplay(ONE, [seen, moment(1, call)])
+    whats = [what for _, _, what in staff_rows([shown, called], str)]
+    assert whats == [
+        "was shown whom to call: Emergency stop pressed",
+        "called the expert: Emergency stop pressed",
+    ]
