@@ -28,6 +28,8 @@ OR_DID_YOU_MEAN = "Or did you mean"
 YES_OR_NO = "yes or no"
 NUMBER_OR_NONE = "the number of one, or no: none of these"
 
+NEXT_LINE = "what should Tangy do? (or: why, help; quit lets Tangy go on by itself)"
+"""In the line of a question that staff asked for themselves."""
 STOPPED_FIRST = "Tangy was stopped: press {pause} to go on first, then answer."
 GIVE_UP = "Give this game up?"
 GIVE_UP_DETAIL = "The game ends here without an answer. Tangy will ask again next time."
@@ -74,3 +76,8 @@ def answer_help(question: Asked | Offered) -> list[str]:
         numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
         lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
     return lines
+
+
+def answer_line(accepts: str) -> str:
+    """Tell in the empty line of a question what can be typed; `accepts` are words that accept."""
+    return f"what should Tangy do? (or: {accepts}why, help, quit)"

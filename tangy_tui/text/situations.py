@@ -232,4 +232,7 @@ ALL_RIGHT = ("all right", "all is right", "that is all right", "all is well", "o
 
 def once_words(instead: str) -> str:
     """Tell that an answer about a fault was carried out, but not learnt."""
-    return f"Done this once. When nothing is wrong, Tangy goes on to {instead!r} here, as shown."
+    return (
+        "Done this once: Tangy does not learn it. Next time, it again does what it was shown here: "
+        f"{instead}."
+    )

@@ -16,6 +16,11 @@ AWAY = "away"
 IS_HERE, IS_AWAY = "here: Enter if they leave", "not here: Enter if they have come"
 SOMEBODY_NEW = "somebody new", "Enter, and type the name"
 
+NEXT = "You say what Tangy does next"
+NEXT_WORDS = "Tangy finishes this first. Type what it does then, and press Enter."
+NEXT_KEYS = "enter says it   esc lets Tangy go on by itself"
+NEXT_EMPTY = "Type what Tangy does next, or press Esc."
+
 NOBODY_KNOWS = "nobody", "I do not know", "Tangy checks the card all the same"
 
 

@@ -22,7 +22,7 @@ from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.staff_view import TANGY_WAITS, TIME_FIRST
 from tangy_tui.ui import run as opening
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.dialogs.staff_line import CommandDialog
+from tangy_tui.ui.dialogs.staff_line import CommandDialog, NextDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.log_view import LogView
@@ -103,6 +103,28 @@ async def test_who_leaves_during_a_step_is_told_and_drawn_as_away_at_once(
         assert world.away == set()  # not before the step is done
         link.free = True
         await until_shown(pilot, lambda: world.away == {"user3"})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gives_back", [False, True])
+async def test_staff_type_what_tangy_does_next_while_it_finishes_its_step(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, gives_back: bool
+) -> None:
+    async with run(app=program) as pilot:
+        await until_shown(pilot, lambda: len(world.called_now) >= 1)
+        while not (world.calling and len(link.said) > link.most):  # until a call is held
+            link.most = len(link.said)
+            await pilot.pause(0.05)
+        await pilot.press("o")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
+        if gives_back:
+            await pilot.press("escape")
+            await until_shown(pilot, lambda: not live(pilot).control.taking_over)
+        else:
+            await pilot.press(*"call number", "enter")
+            link.most = len(link.said)
+            await until_shown(pilot, lambda: "Did you say: call number?" in screen_text(pilot.app))
+        link.most = 1000
 
 
 @pytest.mark.slow

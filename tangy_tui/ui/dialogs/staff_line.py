@@ -18,6 +18,7 @@ from tangy_tui.app.teaching_grammar import Perform
 from tangy_tui.text import typed_commands as text
 from tangy_tui.text.telling import TELL, TELL_HELP, TELL_KEYS, telling_words
 from tangy_tui.ui.dialogs.line import LineDialog
+from tangy_tui.ui.messages import Stop
 
 
 class CommandDialog(LineDialog[GameCommand | Perform | AsksAbout]):
@@ -76,6 +77,34 @@ class CommandDialog(LineDialog[GameCommand | Perform | AsksAbout]):
             line = self.query_one(Input)
             line.value = command
             line.cursor_position = len(command)
+
+
+class NextDialog(LineDialog[str]):
+    """An input line for what Tangy does next, while it still finishes its present step."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "leave", "Let Tangy go on by itself", priority=True)
+    ]
+    HELP = text.NEXT_WORDS
+
+    def __init__(self) -> None:
+        """Create the dialog."""
+        super().__init__(text.NEXT, text.NEXT_WORDS, text.NEXT_KEYS)
+
+    def on_stop(self, message: Stop) -> None:
+        """Close the dialog when the robot is stopped; Tangy still asks afterwards."""
+        self.answer("")
+
+    @property
+    def typed(self) -> bool:
+        """Whether anything has been typed."""
+        return bool(self.query(Input)) and bool(self.query_one(Input).value)
+
+    def taken(self, line: str) -> str:
+        """Return the line without spaces around it; raises TangyError if it is empty."""
+        if not line.strip():
+            raise TangyError(text.NEXT_EMPTY)
+        return line.strip()
 
 
 class TellDialog(LineDialog[str]):

@@ -38,12 +38,15 @@ from tangy_tui.text.control import (
 from tangy_tui.text.live_games import MAY_MOVE
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.driving import DrivingDialog
-from tangy_tui.ui.dialogs.staff_line import TellDialog
+from tangy_tui.ui.dialogs.staff_line import NextDialog, TellDialog
 from tangy_tui.ui.screens.live_cards import LiveCards
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.room_view import RoomView
 
 ANSWERS_SECONDS = 0.7  # for a command, before staff are told that it has to wait
+LOOK_AGAIN_SECONDS = 0.05
+"""The interval at which an answer typed ahead looks for Tangy's question."""
 
 T = TypeVar("T")
 
@@ -132,9 +135,40 @@ class LiveStaff(PlayScreen):
             super().action_leave()
 
     def action_take_over(self) -> None:
-        """Hand control to staff as soon as the current behaviour ends."""
+        """Hand control to staff as soon as the current behaviour ends; they can type at once."""
         if not self._supervision.over:
             self._do(TakeOver())
+            if self.control.taking_over and self.control.stepping:
+                self.run_worker(self._say_next(), name="next", group="type", exclusive=True)
+
+    async def _say_next(self) -> None:
+        """Let staff type what Tangy does next, and answer its question with that."""
+        dialog, answered = NextDialog(), asyncio.get_running_loop().create_future()
+        self.app.push_screen(dialog, answered.set_result)
+        while not answered.done():
+            if self._asks_openly is not None and not dialog.typed:
+                dialog.answer("")  # the line of the question takes the keys
+            await asyncio.sleep(LOOK_AGAIN_SECONDS)
+        said: str | None = answered.result()
+        if said is None:
+            self._let_tangy_go_on()
+        while said and self.control.asks_next:
+            if (asking := self._asks_openly) is not None:
+                asking.take(said)
+                return
+            await asyncio.sleep(LOOK_AGAIN_SECONDS)
+
+    @property
+    def _asks_openly(self) -> AskingPanel | None:
+        """The panel of Tangy's question, once it takes answers."""
+        asking = self._asking
+        return asking if asking is not None and asking.is_open else None
+
+    def _let_tangy_go_on(self) -> None:
+        if (asking := self._asking) is not None:
+            asking.ask_to_give_up()
+        elif self.control.taking_over:
+            self._do(GiveBack())
 
     def action_drive(self) -> None:
         """Let staff drive while the game waits."""

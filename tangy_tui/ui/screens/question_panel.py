@@ -143,7 +143,7 @@ class AskingPanel(Vertical):
         yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
             sayable=lambda: self._answers.sayable,
-            placeholder=f"what should Tangy do? (or: {other}why, help, quit)",
+            placeholder=text.NEXT_LINE if self._wanted else text.answer_line(other),
             resting=self._keys(going=True),
             closed=True,
             id="command",
@@ -259,22 +259,26 @@ class AskingPanel(Vertical):
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         """Handle a typed answer or command."""
         event.stop()
+        self.take(event.text)
+
+    def take(self, typed: str) -> None:
+        """Handle an answer or a command that was typed here, or before the question was visible."""
         self._by_voice = False
         try:
-            if word := read_question(event.text, self._find_person) or read_screen(event.text):
+            if word := read_question(typed, self._find_person) or read_screen(typed):
                 self.query_one(CommandBar).ready()
                 self._show(word)
                 return
             rules = self._workspace.activity.rules
-            command = read_command(event.text, self._find_person, self._phrasebook.game, rules)
+            command = read_command(typed, self._find_person, self._phrasebook.game, rules)
         except TangyError as error:
-            self._return(event.text, str(error))
+            self._return(typed, str(error))
             return
         if command is None or (isinstance(command, Accept) and not self._acceptable):
             if self._held:
-                self._return(event.text, text.STOPPED_FIRST)
+                self._return(typed, text.STOPPED_FIRST)
             else:
-                self._tell(self._answers.say(Say(event.text)))
+                self._tell(self._answers.say(Say(typed)))
         else:
             self.query_one(CommandBar).ready()
             self._carry_out(command)
