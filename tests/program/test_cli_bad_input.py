@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from subprocess import CompletedProcess
 
 import pytest
@@ -72,7 +73,8 @@ def test_an_unlearnt_policy_cannot_be_shown_or_played(
 ) -> None:
     done = tangy(verb, "--data", tmp_path / "empty")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "`tangy teach`), then choose Learn (`tangy learn`)" in done.stderr
+    there = f"--data {quote(str(tmp_path / 'empty'))}"
+    assert f"`tangy teach {there}`), then choose Learn (`tangy learn {there}`)" in done.stderr
 
 
 def test_learning_without_demonstrations_is_refused(tangy: Tangy, tmp_path: Path) -> None:
