@@ -6,6 +6,7 @@ them: the answers to later questions are kept.
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import NamedTuple
 
 from tangy_profiles.reading import plain
 from tangy_tui.language.answers import yes_or_no
+from tangy_tui.language.words import NUMBERS as NUMBER_WORDS
 
 QUIZ, TALK, SONGS, EXERCISES = "quiz", "talk", "songs", "exercises"
 MEMORY, GAME, CARDS = "memory", "game", "cards"
@@ -51,6 +53,11 @@ YES_OR_NO = (POINTS, MEDIA, TURNS)
 CARD_ROWS = ("top", "middle", "bottom")
 MOST_WRONG, MOST_TEAMS = 5, 6
 LONGEST, LONGEST_TITLE = 200, 60
+LATIN = str.maketrans(
+    {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "æ": "ae", "œ": "oe", "ø": "oe", "ł": "l"}
+)
+"""Letters of file names that are more than a plain letter with an accent."""
+TENS = ("thirty", "forty", "fifty", "sixty", "hundred")
 NOTHING = "-"
 """Typed to leave empty what was answered before."""
 
@@ -88,6 +95,7 @@ class Draft:
         said: the answers; a question of a table's row is named `ask.2`.
         before: answers that the author went back to; they are offered again.
         given: questions that options answered; they are not asked.
+        own_rounds: the author chose the rounds of a game; otherwise they follow the table.
         imported: rows that were read from a file, None: the author enters them.
     """
 
@@ -96,6 +104,7 @@ class Draft:
     said: dict[str, str] = field(default_factory=dict)
     before: dict[str, str] = field(default_factory=dict)
     given: set[str] = field(default_factory=set)
+    own_rounds: bool = False
     imported: int | None = None
 
     @property
@@ -135,7 +144,7 @@ class Draft:
                     break
                 yield from (row_key(one, number) for one in self.fields[1:])
                 number += 1
-        if self.kind in MOST_ROUNDS:
+        if self.kind in MOST_ROUNDS and self.table_size() > 1:
             yield ROUNDS
 
     def open(self) -> str | None:
@@ -161,10 +170,10 @@ class Draft:
 
     def default(self, key: str) -> str | None:
         """Return what Enter means; None: an answer is needed."""
-        if key in self.before:
+        if key in self.before and (key != ROUNDS or self.own_rounds):
             return self.before[key]
         if key == ROUNDS:
-            return str(min(MOST_ROUNDS[self.kind], self.table_size()))
+            return str(self._usual_rounds())
         base, number = split_key(key)
         if number and base == self.fields[0]:
             return ""
@@ -176,14 +185,24 @@ class Draft:
             return CARD_ROWS[(number - 1) % len(CARD_ROWS)]
         return DEFAULTS.get(base)
 
+    def _usual_rounds(self) -> int:
+        """Return the rounds of a game, as many for each team if the table has enough."""
+        most, teams = min(MOST_ROUNDS[self.kind], self.table_size()), self.teams()
+        return most - most % teams if teams and most > teams else most
+
+    def teams(self) -> int:
+        """Return how many teams take turns, 0 if people do."""
+        return len(listed(self.said.get(TEAMS, ""))) if self.kind == QUIZ else 0
+
     def answer(self, key: str, text: str) -> Problem | None:
         """Take an answer; return why it cannot be taken."""
         base, number = split_key(key)
         text = kept(text, quotes=bool(number))
+        typed = text
         if text == NOTHING:
             if number > 1 and base == self.fields[0]:
                 self._remove_row(number)
-                self._shorten()
+                self._fit_rounds()
                 return None
             text = (DEFAULTS.get(base) or "") if not number or base != RIGHT else ""
             self.before.pop(key, None)
@@ -193,7 +212,9 @@ class Draft:
         if (problem := self._problem(key, text)) is None:
             self.said[key] = text
             self.before.pop(key, None)
-            self._shorten()
+            if key == ROUNDS and typed:
+                self.own_rounds = text != str(self._usual_rounds())
+            self._fit_rounds()
         return problem
 
     def back(self) -> bool:
@@ -213,12 +234,15 @@ class Draft:
             if key in self.said:
                 self.before[key] = self.said.pop(key)
 
-    def _shorten(self) -> None:
-        """Ask for the rounds again if the table has become shorter than a game."""
+    def _fit_rounds(self) -> None:
+        """Fit the rounds to the table; ask the author who chose more than it now has."""
         if ROUNDS not in self.said or ROUNDS in self.given or self.open() is not None:
             return
-        if self.number(ROUNDS) > self.table_size():
+        if not self.own_rounds:
+            self.said[ROUNDS] = str(self._usual_rounds())
+        elif self.number(ROUNDS) > self.table_size():
             del self.said[ROUNDS]
+            self.own_rounds = False
 
     def _remove_row(self, number: int) -> None:
         """Remove a row of the table: those after it move up."""
@@ -238,7 +262,10 @@ class Draft:
         low = text.lower()
         if base == KIND:
             at = int(low) if low.isdecimal() else 0
-            return KINDS[at - 1] if 1 <= at <= len(KINDS) else self.examples.kinds.get(low, low)
+            begun = [one for one in KINDS if low and one.startswith(low)]
+            if 1 <= at <= len(KINDS) or len(begun) == 1:
+                return KINDS[at - 1] if at else begun[0]
+            return self.examples.kinds.get(low, low)
         if base in YES_OR_NO:
             said = yes_or_no({"y": "yes", "n": "no"}.get(low, low))
             return {True: "y", False: "n", None: text}[said]
@@ -248,6 +275,10 @@ class Draft:
             return patterns[at - 1] if 1 <= at <= len(patterns) else low
         if base == CLAIM:
             return low
+        if base == "times":
+            return text.removesuffix(" times")
+        if base in (PICTURE, SOUND) and Path(text).parent.resolve() == self.folder.resolve():
+            return Path(text).name
         if base == ITEM:
             first, _, rest = text.partition(" ")
             return rest if rest and first.lower() in ("a", "an", "the", "one", "some") else text
@@ -277,6 +308,8 @@ class Draft:
             return Problem("teams", ("2", str(MOST_TEAMS)))
         if base == WRONG:
             return self._wrong_problem(text, self.said.get(row_key(RIGHT, number), ""))
+        if base == "times" and not _has_number(text):
+            return Problem("times")
         if base in (PICTURE, SOUND) and text and not (self.folder / text).is_file():
             return Problem("no file", (text, str(self.folder)))
         low, high = (1, self.table_size()) if base == ROUNDS else RANGES.get(base, (0, 0))
@@ -295,9 +328,17 @@ class Draft:
 
 
 def name_of(title: str) -> str:
-    """Return the file name of a title, without a suffix."""
-    kept_ = "".join(c if c.isascii() and c.isalnum() else " " for c in title.lower())
+    """Return the file name of a title, without a suffix: in plain letters and digits."""
+    latin = unicodedata.normalize("NFC", title.lower()).translate(LATIN)
+    bare = (c for c in unicodedata.normalize("NFKD", latin) if not unicodedata.combining(c))
+    kept_ = "".join(c if c.isascii() and c.isalnum() else " " for c in bare)
     return "-".join(kept_.split())
+
+
+def _has_number(text: str) -> bool:
+    """Return whether a text holds a number, in digits or in words."""
+    words = text.lower().replace("-", " ").split()
+    return any(c.isdecimal() for c in text) or bool({*NUMBER_WORDS, *TENS}.intersection(words))
 
 
 def row_key(base: str, number: int) -> str:

@@ -154,6 +154,15 @@ def table_lines(activity: DeclaredActivity) -> Iterator[str]:
         )
 
 
+def uneven_notes(activity: DeclaredActivity) -> Iterator[str]:
+    """Tell if teams that take turns cannot have as many rounds each."""
+    declaration = activity.declaration
+    rounds, teams = declaration.items.rounds, len(declaration.teams)
+    passes = any(one.passes_turn for one in declaration.behaviours.values())
+    if passes and teams and rounds % teams:
+        yield f"{teams} teams cannot share {counted(rounds, 'round')} evenly: some get one more."
+
+
 def separator_notes(activity: DeclaredActivity) -> Iterator[str]:
     """Tell which tables have something else than commas between their cells."""
     for table in activity.declaration.tables:

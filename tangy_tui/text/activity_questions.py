@@ -20,6 +20,7 @@ NOTHING_ANSWERED = "The answers ended before the last question: nothing is writt
 NOTHING_WRITTEN = "Nothing is written."
 WRITE = "Shall Tangy write it? (y: yes · n: no · back · a number: change that answer)"
 WRITE_AGAIN = "Please type y, n, back, or one of the numbers above."
+ONE_MOMENT = "One moment: Tangy checks the activity, and plays a game of it."
 BEGINS = "A game of it begins like this:"
 CHECKED = "Tangy has checked it, and found no mistake."
 WITH_MISTAKES = "Tangy cannot play this yet. Change the answer that it is about:"
@@ -81,6 +82,7 @@ PROBLEMS: Mapping[str, str] = {
     "wrong answers": "Please type from {0} to {1} wrong answers, with commas between them.",
     "same": "Two of the answers are the same. Please type wrong answers that differ.",
     "no file": "There is no {0} in {1}. Put it there, or press Enter for none.",
+    "times": "Please type a number, such as 5 or five.",
     "number": "Please type a number from {0} to {1}.",
     "fives": "Please type a number that 5 divides: 40, 45, 50 ...",
     "no fields": "Please type all parts of it, with ; between them: {all}.",
@@ -114,6 +116,7 @@ PARTS: Mapping[str, str] = {
 EACH_IN_TURN = "each person in turn"
 MORE_ROWS = "one more"
 EXAMPLES = "Tangy's examples ({}); change them in the table"
+UNEVEN = "      {teams} teams cannot share {rounds} evenly: some get one more. Even: {even}."
 FROM_FILE = "   {} from your file"
 SUMMARY_OF_TEAMS = "{} teams, 10 minutes; you need nothing else"
 COMMENT = "# {title}. Try it with: tangy activity try {name}.toml"
@@ -160,6 +163,13 @@ def draft_lines(draft: Draft) -> list[str]:
     lines = []
     for number, (label, keys) in enumerate(answers(draft), 1):
         lines.append(f"  {number:2}  {label}: {_told(draft, keys)}")
+    rounds, teams = draft.number(new.ROUNDS) if draft.kind == new.QUIZ else 0, draft.teams()
+    if teams and rounds % teams:
+        low = rounds - rounds % teams
+        fair = [n for n in (low, low + teams) if 0 < n <= draft.table_size()]
+        even = " or ".join(map(str, fair)) or "none"
+        asked = counted(rounds, LABELS[new.ASK])
+        lines.append(UNEVEN.format(teams=teams, rounds=asked, even=even))
     if draft.imported:
         lines.append(FROM_FILE.format(counted(draft.imported, LABELS[new.ASK])))
     return lines

@@ -266,7 +266,7 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
     from tangy_tui.language.activity_check import CheckedFile, check_activity
-    from tangy_tui.text.activities import separator_notes, table_lines, without_words
+    from tangy_tui.text.activities import separator_notes, table_lines, uneven_notes, without_words
     from tangy_tui.text.activity_search import dead_end_lines, finding_words, search_lines
 
     try:
@@ -286,7 +286,7 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
             for one in found.flaws
         ]
         told = search_lines(found, teams=bool(activity.teams))
-        notes = map(plain, (*separator_notes(activity), *told))
+        notes = map(plain, (*separator_notes(activity), *uneven_notes(activity), *told))
         warnings = (
             *map(plain, table_lines(activity)),
             *checked.warnings,

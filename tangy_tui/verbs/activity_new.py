@@ -163,7 +163,9 @@ def _ask_all(draft: Draft, read: list[ChoiceQuestion]) -> None:
     while True:
         while (key := draft.open()) is not None:
             _ask(draft, key)
+        _show("", words.ONE_MOMENT)
         problems = _made(draft, read, show=True)
+        _drop_typed()
         print()
         _show(*words.draft_lines(draft))
         if problems:
@@ -264,6 +266,15 @@ def _show(*lines: str) -> None:
         hang = " " * (len(line) - len(line.lstrip()) + 2)
         parts = wrap(line, width, subsequent_indent=hang) if 20 < width < len(line) else [line]
         print("\n".join(parts))
+
+
+def _drop_typed() -> None:
+    """Drop what was typed at the terminal before the question was there."""
+    import termios
+
+    if sys.stdin.isatty():
+        sys.stdout.flush()
+        termios.tcflush(sys.stdin, termios.TCIFLUSH)
 
 
 def _asked() -> str:

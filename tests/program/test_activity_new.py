@@ -10,8 +10,9 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tangy_tui.app.new_activity import KINDS
-from tangy_tui.text.activity_questions import ENDS, ENDS_EMPTY, PROBLEMS
+from tangy_tui.app.activity_bases import examples
+from tangy_tui.app.new_activity import KINDS, Draft, Problem, name_of
+from tangy_tui.text.activity_questions import ENDS, ENDS_EMPTY, PROBLEMS, draft_lines
 from tests.support.media import make_picture
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -109,7 +110,7 @@ def test_questions_are_asked_again_until_they_fit_and_can_be_gone_back_to(
 def test_answers_can_be_changed_by_their_number_and_rows_removed(
     tangy: Tangy, tmp_path: Path
 ) -> None:
-    changes = "1\nMeadow quiz\n6\nWhich flower pricks?\n\n\n\n7\n-\n1\ny\n"
+    changes = "1\nMeadow quiz\n6\nWhich flower pricks?\n\n\n\n7\n-\ny\n"
     made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n{changes}")
     assert (made.returncode, made.stderr) == (0, "")
     assert not (tmp_path / "garden-quiz.toml").exists()
@@ -191,3 +192,75 @@ def test_an_existing_file_is_not_overwritten(tangy: Tangy, tmp_path: Path) -> No
     assert made.returncode == 2
     assert "is there already" in made.stderr
     assert (tmp_path / "poems.csv").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize(
+    ("title", "name"),
+    [
+        ("Chair exercises: Rücken & arms", "chair-exercises-ruecken-arms"),
+        ("Größe ÖL", "groesse-oel"), ("Café Señora", "cafe-senora"), ("u\u0308ben", "ueben"),
+    ],
+)  # fmt: skip
+def test_a_file_name_has_plain_letters(title: str, name: str) -> None:
+    assert name_of(title) == name
+
+
+@pytest.mark.parametrize(
+    ("said", "kind"),
+    [("exercise", "exercises"), ("Song", "songs"), ("ex", "exercises"), ("4", "exercises")],
+)
+def test_a_kind_is_known_by_its_beginning(said: str, kind: str) -> None:
+    draft = Draft(Path(), examples())
+    assert draft.answer("kind", said) is None
+    assert draft.kind == kind
+
+
+def drafted(tmp_path: Path, *answers: str) -> Draft:
+    """Return a draft with these answers, in their order."""
+    draft = Draft(tmp_path, examples())
+    for said in answers:
+        key = draft.open()
+        assert key is not None
+        assert draft.answer(key, said) is None
+    return draft
+
+
+def test_the_rounds_follow_the_table_unless_the_author_chose_them(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, "Moves", "exercises", "Nod", "Slowly", "6", "")
+    assert draft.open() is None  # of one movement, one comes up
+    draft.reopen("move.2")
+    for said in ("Wave", "Gently", "five times", "Clap", "Softly", "", "", ""):
+        draft.answer(draft.open() or "", said)
+    assert (draft.open(), draft.said["rounds"], draft.said["times.2"]) == (None, "3", "five")
+    draft.reopen("move.4")
+    for said in ("Sway", "Gently", "", ""):
+        draft.answer(draft.open() or "", said)
+    assert (draft.open(), draft.said["rounds"]) == (None, "4")
+    draft.reopen("rounds")
+    draft.answer("rounds", "2")
+    draft.reopen("move.5")
+    for said in ("Bow", "Gently", "", ""):
+        draft.answer(draft.open() or "", said)
+    assert (draft.open(), draft.said["rounds"]) == (None, "2")
+
+
+def test_how_many_times_is_a_number(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, "Moves", "exercises", "Nod", "Slowly")
+    assert draft.answer("times.1", "Stamp your feet") == Problem("times")
+    assert draft.answer("times.1", "twenty-five times") is None
+
+
+def test_teams_get_as_many_questions_each_or_a_remark(tmp_path: Path) -> None:
+    asked = ("Who?", "me", "you", "", "Why?", "so", "no", "", "When?", "now", "later", "", "")
+    draft = drafted(tmp_path, "Ours", "quiz", "Reds, Blues", "", "", *asked)
+    assert draft.default("rounds") == "2"
+    draft.answer("rounds", "3")
+    told = "2 teams cannot share 3 questions evenly: some get one more. Even: 2."
+    assert told in "\n".join(draft_lines(draft))
+
+
+def test_a_picture_can_be_named_by_its_whole_path(tmp_path: Path) -> None:
+    make_picture(tmp_path / "rose.png")
+    draft = drafted(tmp_path, "Ours", "quiz", "", "", "y", "Who?", "me", "you", "")
+    assert draft.answer("picture.1", str(tmp_path / "rose.png")) is None
+    assert draft.said["picture.1"] == "rose.png"
