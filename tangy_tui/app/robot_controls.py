@@ -169,14 +169,25 @@ class RobotControls:
             return StaffNote("nothing to tell")
         unclear = said.rstrip().endswith(UNCLEAR) or command.sure < CERTAIN
         sure = min(command.sure, UNCLEAR_SURE if unclear else 1.0)
-        found = robot.tell(command.person, said, sure, command.source)
-        if found is None:
+        told = robot.tell(command.person, said, sure, command.source)
+        if told is None:
             return StaffNote("not told", words=", ".join(sayable(robot.ahead)))
+        found = told.meant
+        if told.whose:
+            return StaffNote("whose", robot.people[0], said)
+        if not told.counts:
+            return StaffNote("not asked", found.who or "", said)
         heard = command.source == "speech"
         self._note("heard" if heard else "told", person=found.who or "", detail=said)
         asked = robot.may_ask_again(found.who)
         if unclear and not asked:  # then the game asks staff instead
             return StaffNote("not told", words=", ".join(sayable(robot.ahead)))
+        if unclear:
+            return StaffNote("told unclear", found.who or "", said.rstrip().rstrip(UNCLEAR))
+        if told.judgement:
+            words = "" if told.by_staff else said
+            right = told.judgement == "right"
+            return StaffNote("told right" if right else "told wrong", found.who or "", words)
         return StaffNote("told", found.who or "", said)
 
     def _tell_of_card(self, eyes: StaffCardReports, command: Tell) -> StaffNote:

@@ -9,6 +9,7 @@ from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import CallAgain, ClaimCard, ComesIn, GoesAway, TakeBackCall
 from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
+from tangy_tui.text.told import told_words
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_commands import Autonomy, GameCommand
@@ -198,8 +199,16 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"Tangy does not know {who}'s card. Add its number: check 17 {who}."
         case "asked for":
             return f"{name(about)} asks for help."
-        case "told":
-            return f"{name(about)}: {noted.words}. Noted." if about else f"Noted: {noted.words}."
+        case (
+            "told"
+            | "told right"
+            | "told wrong"
+            | "told unclear"
+            | "not told"
+            | "not asked"
+            | "whose"
+        ):
+            return told_words(noted, name(about) if about else "")
         case "voided":
             return f"{name(about)}'s last response does not count any more."
         case "driven":
@@ -221,9 +230,6 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return "There is no game now."
         case "no robot":
             return "That needs a robot, or the bench: this game is simulated."
-        case "not told":
-            counts = f" These do: {noted.words}." if noted.words else ""
-            return f"That does not count in this game.{counts}"
         case "nothing to tell":
             return "In this activity Tangy itself sees what people do."
         case "nothing called":

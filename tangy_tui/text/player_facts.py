@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 from tangy_profiles.declared.situation_words import value_words
 from tangy_tui.monitoring.player_facts import PlayerFacts
 from tangy_tui.monitoring.replay import GameReplay
-from tangy_tui.text.numbers import listed
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import Name
 from tangy_tui.text.times import time_of_day
 
 HEADING = "Answers and scores"
 PERSON, WHEN, ITEM = "person", "when", "what it was about"
-UNCLEAR = "not clear"
+UNCLEAR = "no clear answer"
 
 
 def in_game_words(replays: Mapping[str, GameReplay], facts: PlayerFacts) -> str:
@@ -77,7 +77,7 @@ def player_lines(facts: PlayerFacts, name: Name) -> Iterator[str]:
             if (values := _values(facts, person, at))
         ]
         if unclear := facts.unclear.get(person):
-            told.append(f"{unclear} {UNCLEAR}")
+            told.append(f"{UNCLEAR}: {counted(unclear, 'time')}")
         if told:
             yield f"  {name(person)}: {'; '.join(told)}"
 

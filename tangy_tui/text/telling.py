@@ -47,5 +47,6 @@ def waiting_words(
 def telling_words(waits_for: str, sayable: Sequence[str]) -> str:
     """Tell which words Tangy knows now, and whom they are about without a name."""
     known = f"One of: {', '.join(sayable)}." if sayable else "There is nothing to tell now."
-    about = f" Without a name it is about {waits_for}." if waits_for else ""
-    return f"{known}{about}"
+    if waits_for:
+        return f"{known} Without a name it is about {waits_for}."
+    return f"{known} Begin with the person's name, as in Rosa: ..." if sayable else known

@@ -38,7 +38,7 @@ def test_an_unclear_answer_is_asked_again_before_staff_are_asked(tmp_path: Path)
     do("ask question", "user1")
     said = len(link.said)
     for number in range(activity.asking.visit):
-        assert controls.do(Tell(None, "b?")).kind == "told"
+        assert controls.do(Tell(None, "b?")).kind == "told unclear"
         do("allow time")
         text = ASK_AGAIN[number % len(ASK_AGAIN)].replace("{name}", "Ann")
         assert text in link.said[said:]
@@ -46,7 +46,7 @@ def test_an_unclear_answer_is_asked_again_before_staff_are_asked(tmp_path: Path)
     refused = controls.do(Tell(None, "b?"))
     assert refused.kind == "not told" and refused.words
     assert world.observe().stage == "listen"
-    assert controls.do(Tell(None, "b")).kind == "told"
+    assert controls.do(Tell(None, "b")).kind == "told wrong"
     assert world.observe().stage == "judge"
 
 
@@ -65,10 +65,10 @@ def test_only_a_certain_spoken_answer_is_judged(tmp_path: Path) -> None:
     for name, target in (("welcome everyone", None), ("ask question", "user1")):
         world.execute(activity.action(activity.behaviour(name), target, None))
     option = activity.declaration.items.value(world.game.row, "a")
-    assert controls.do(Tell(None, option, 0.5, "speech")).kind == "told"
+    assert controls.do(Tell(None, option, 0.5, "speech")).kind == "told unclear"
     assert world.observe().stage == "listen"
     done = world.execute(activity.action(activity.behaviour("allow time"), None, None))
     assert [(one.source, one.asked_again) for one in done.unclear] == [("speech", True)]
-    assert controls.do(Tell(None, option, 0.95, "speech")).kind == "told"
+    assert controls.do(Tell(None, option, 0.95, "speech")).kind == "told right"
     assert world.observe().stage == "judge"
     assert ("heard", "user1") in noted

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_profiles.declared.game import DeclaredGame
+from tangy_profiles.declared.told import told_now
 from tangy_profiles.declared.typed_observations import TypedObservation, meant, sayable
 from tests.support.declared import declared
 
@@ -62,7 +63,7 @@ def test_a_fact_of_the_group_belongs_to_nobody() -> None:
 
 def test_the_suggestions_are_the_options_and_the_facts() -> None:
     game = _game("trivia", "welcome everyone", "ask question")
-    assert sayable(game) == ["Mars", "Earth", "Saturn"]
+    assert sayable(game) == ["Mars", "Earth", "Saturn", "right", "wrong"]
     assert sayable(_game("exercises")) == ["joins", "tired"]
 
 
@@ -70,6 +71,53 @@ def test_options_are_suggested_only_while_their_question_is_open() -> None:
     assert sayable(_game("trivia", "welcome everyone")) == []
     game = _game("trivia", "welcome everyone", "ask question")
     assert game.observe("answer", game.players[game.turn], "Mars")
-    assert sayable(game) == ["Mars", "Earth", "Saturn"], "a person may correct themselves"
+    assert sayable(game) == ["Mars", "Earth", "Saturn", "right", "wrong"], (
+        "a person may correct themselves"
+    )
     game.execute("tell answer", game.players[game.turn])
     assert sayable(game) == []
+
+
+@pytest.mark.parametrize(
+    ("said", "value"),
+    [
+        ("right", "right"),
+        ("it is right", "right"),
+        ("Correct!", "right"),
+        ("answer right", "right"),
+        ("answer is not right", "wrong"),
+        ("not right", "wrong"),
+        ("wrong", "wrong"),
+    ],
+)
+def test_staff_can_say_that_an_answer_was_right_or_wrong(said: str, value: str) -> None:
+    game = _game("trivia", "welcome everyone", "ask question")
+    told = told_now(game, "user1", said, 1.0)
+    assert told is not None and told.counts and told.by_staff
+    assert told.judgement == value
+    game.observe(*told.meant)
+    assert game.value("answer", "user1") == value
+
+
+def test_an_answer_counts_only_while_its_question_is_open() -> None:
+    game = _game("trivia", "welcome everyone")
+    early = told_now(game, "user1", "right", 1.0)
+    assert early is not None and not early.counts
+    game.execute("ask question", "user1")
+    other = told_now(game, "user2", "earth", 1.0)
+    assert other is not None and not other.counts, "it is the turn of another person"
+    game.observe("asking", "user3", "yes")
+    asked = told_now(game, "user1", "earth", 1.0)
+    assert asked is not None and asked.counts, "also while a person asks for help"
+    game.execute("tell answer", "user1")
+    late = told_now(game, "user1", "earth", 1.0)
+    assert late is not None and not late.counts
+
+
+def test_a_fact_without_a_name_is_only_assumed_of_the_person_in_turn() -> None:
+    told = told_now(_game("exercises"), None, "tired", 1.0)
+    assert told is not None and told.whose and not told.counts
+    own = told_now(_game("trivia", "welcome everyone", "ask question"), None, "mars", 1.0)
+    assert own is not None and own.meant.who == "user1" and own.counts
+    heard = told_now(_game("exercises"), None, "tired", 1.0, "speech")
+    assert heard is not None and heard.meant.who == "user1"

@@ -29,7 +29,8 @@ from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.situation_words import words_now
 from tangy_profiles.declared.speech import again, media, with_names, words
-from tangy_profiles.declared.typed_observations import TypedObservation, meant
+from tangy_profiles.declared.told import Told, told_now
+from tangy_profiles.declared.typed_observations import meant
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.defaults import ASK_AGAIN
 from tangy_profiles.past_game import FACTS_UNKNOWN, OTHER_PEOPLE, OTHERWISE, NotResumable, PastGame
@@ -134,10 +135,8 @@ class DeclaredLiveWorld(LiveWorld):
 
     def tell(
         self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
-    ) -> TypedObservation | None:
-        """Add a report about a person, or a person's own answer.
-
-        It takes effect at the next observation, so that it never changes a behaviour in progress.
+    ) -> Told | None:
+        """Add a report about a person, or their answer; it takes effect at the next observation.
 
         Args:
             who: the player; None if nobody is named.
@@ -146,12 +145,12 @@ class DeclaredLiveWorld(LiveWorld):
             source: source of the report, for the log.
 
         Returns:
-            What the words state about whom; None if they state no fact.
+            What the words state, taken in if it counts; None if they state no fact.
         """
-        found = None if self.over else meant(self.ahead, who, said)
-        if found is not None:
-            self.take(FactObservation(found, certainty, source))
-        return found
+        told = None if self.over else told_now(self.ahead, who, said, certainty, source)
+        if told and told.counts:
+            self.take(FactObservation(told.meant, certainty, source))
+        return told
 
     def take(self, observed: FactObservation) -> None:
         """Add an observation of a fact; it takes effect at the next `observe`."""

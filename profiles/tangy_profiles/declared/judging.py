@@ -14,6 +14,9 @@ CERTAIN = 0.7
 ALIKE = 0.85
 """The similarity from which a free answer counts as the right one, misspelt or misheard."""
 LETTERS = "abcdefgh"
+VERDICT = "="
+"""Before a value that staff have judged themselves, in place of an answer."""
+RIGHT_WORDS, WRONG_WORDS = ("right", "correct"), ("wrong", "incorrect", "false")
 
 
 @lru_cache(maxsize=4096)
@@ -25,10 +28,32 @@ def plain_words(text: str) -> str:
     return " ".join(words)
 
 
+def verdict(fact: Fact, said: str, *, negated: bool = False) -> str | None:
+    """Return the raw observation for the words "right" or "wrong"; None for other words.
+
+    Args:
+        fact: a fact that is judged.
+        said: plain words: a value of the fact, its words in the file, or a usual word for it.
+        negated: whether a "not" stood before them.
+    """
+    names = {
+        plain_words(words): value for value, words in zip(fact.values, fact.words, strict=False)
+    }
+    names |= {plain_words(value): value for value in fact.values}
+    names |= dict.fromkeys(RIGHT_WORDS, fact.values[1]) | dict.fromkeys(WRONG_WORDS, fact.values[2])
+    value = names.get(said)
+    if value is None or value == fact.values[0]:
+        return None
+    if negated:
+        value = fact.values[2] if value == fact.values[1] else fact.values[1]
+    return f"{VERDICT}{value}"
+
+
 def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> str | None:
     """Return the value of a fact that an observation stands for.
 
     An answer to check may be the letter of an option, its text, or any synonym of the right answer.
+    A value after `VERDICT` counts as it is.
 
     Args:
         fact: the observed fact.
@@ -44,6 +69,8 @@ def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> st
         return None
     if not fact.checks:
         return raw if raw in fact.values else None
+    if raw.startswith(VERDICT) and raw.removeprefix(VERDICT) in fact.values[1:]:
+        return raw.removeprefix(VERDICT)
     right = [plain_words(way) for way in items.value(row, fact.checks).split("|")]
     said = plain_words(raw)
     if not said:

@@ -1,7 +1,8 @@
 """Observations that staff type or say during a game: a fact, its player and its value.
 
-They use the words of the activity's file: an answer ("B", "honey"), a value ("match"), a fact
-("tired", "not tired"), or a fact with its value ("mood sad").
+They use the words of the activity's file: an answer ("B", "honey"), whether an answer was right
+("right", "guess wrong"), a value ("match"), a fact ("tired", "not tired"), or a fact with its value
+("mood sad").
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import NamedTuple
 
 from tangy_profiles.declared.acts import Act, take_in
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.judging import judged, plain_words
+from tangy_profiles.declared.judging import judged, plain_words, verdict
 from tangy_profiles.declared.model import Fact
 from tangy_profiles.declared.vocabulary import ASKING, NO, YES
 
@@ -46,7 +47,8 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation |
         words: the typed or recognised words.
 
     Returns:
-        The observation; None if the words mention no fact.
+        The observation; None if the words mention no fact. It has no player if the fact is a
+        player's, nobody is named, and it is not clear who is meant.
     """
     said = plain_words(words)
     if not said:
@@ -58,17 +60,19 @@ def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation |
         whose = who if fact.per_player else None
         if fact.per_player and whose is None:
             whose = about(game)
-        if whose is not None or not fact.per_player:
-            return TypedObservation(fact.name, whose, raw)
+        return TypedObservation(fact.name, whose, raw)
     return None
 
 
 def sayable(game: DeclaredGame) -> list[str]:
     """Return words that can be observed now: the options, and values or names of facts.
 
-    The options are there while their question is open.
+    The options, and "right" and "wrong", are there while their question is open.
     """
     found = open_options(game)
+    for fact in can_be_told(game):
+        if fact.checks and is_open(game, fact):
+            found += fact.values[1:]
     for fact in can_be_told(game):
         if fact.checks:
             continue
@@ -98,7 +102,20 @@ def is_open(game: DeclaredGame, fact: Fact) -> bool:
 
 
 def about(game: DeclaredGame) -> str | None:
-    """Return the person meant by words without a name: that of the stage, or whose turn it is."""
+    """Return the person meant by words without a name; None if anybody could be meant.
+
+    It is the person whose turn it is, or to whom Tangy has spoken and now listens.
+    """
+    stage, person = game.stage()
+    if stage.about in ("whose turn", "addressed") and person is not None:
+        return person
+    if any(one.passes_turn for one in game.declaration.behaviours.values()):
+        return game.players[game.turn]
+    return game.here[0] if len(game.here) == 1 else None
+
+
+def waits_for(game: DeclaredGame) -> str:
+    """Return the person to whom a spoken answer belongs: that of the stage, or whose turn it is."""
     person = game.stage()[1]
     return person if person is not None else game.players[game.turn]
 
@@ -116,7 +133,8 @@ def _values(facts: tuple[Fact, ...], said: str) -> Iterator[tuple[Fact, str]]:
             yield fact, value
     for fact in facts:
         if fact.checks and not fact.options:
-            yield fact, said
+            name = plain_words(fact.name)
+            yield fact, said.removeprefix(f"{name} ")
 
 
 def _value_of(fact: Fact, said: str) -> str | None:
@@ -133,6 +151,12 @@ def _value_of(fact: Fact, said: str) -> str | None:
         if fact.kind == "flag":
             given = YES if rest in ("", YES) else NO if rest in NEGATIONS else None
             return given if not negated or given is None else NO
-        return values.get(rest) if not fact.checks else None
-    usable = fact.kind == "choice" and not fact.checks and not negated
+        if fact.checks:
+            plain = [one for one in rest.split() if one not in NEGATIONS]
+            negated |= len(plain) < len(rest.split())
+            return verdict(fact, " ".join(plain), negated=negated)
+        return values.get(rest)
+    if fact.checks:
+        return verdict(fact, said) or verdict(fact, " ".join(words), negated=negated)
+    usable = fact.kind == "choice" and not negated
     return values.get(" ".join(words)) if usable else None

@@ -108,22 +108,30 @@ class NextDialog(LineDialog[str]):
 
 
 class TellDialog(LineDialog[str]):
-    """An input line: Enter submits the report, esc closes."""
+    """An input line: Enter tells the report, esc closes. A report that is refused stays."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "leave", "Tell nothing", priority=True)
     ]
     HELP = TELL_HELP
 
-    def __init__(self, waits_for: str, sayable: Sequence[str]) -> None:
+    def __init__(self, tell: Callable[[str], None], waits_for: str, sayable: Sequence[str]) -> None:
         """Create the dialog.
 
         Args:
+            tell: tells Tangy a report; raises TangyError if it is refused.
             waits_for: the name of the person the game waits for, "" for nobody.
             sayable: the words that have a meaning now.
         """
         super().__init__(TELL, telling_words(waits_for, sayable), TELL_KEYS)
+        self._tell = tell
 
     def taken(self, line: str) -> str | None:
-        """Return the line without spaces around it; None if it is empty."""
-        return line.strip() or None
+        """Tell the line; None if it is empty. Raises TangyError if it is refused."""
+        if said := line.strip():
+            self._tell(said)
+        return said or None
+
+    def rejected(self, line: Input) -> None:
+        """Select the line, so that the next letter replaces it."""
+        line.action_select_all()

@@ -28,11 +28,12 @@ from tangy_tui.app.game_commands import (
     TakeBackCall,
     TakeOver,
 )
-from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.app.staff_notes import REFUSALS, StaffNote
 from tangy_tui.learning.verification import Verified
 from tangy_tui.text.control import (
     NOT_WHILE_WORKING,
     WHO_NEEDS_HELP,
+    noted_words,
     waits_words,
 )
 from tangy_tui.text.live_games import MAY_MOVE
@@ -230,13 +231,18 @@ class LiveStaff(PlayScreen):
             person, words = about(world.ahead), tuple(sayable(world.ahead))
         else:
             person, words = self.control.robot.asks_about
-        dialog = TellDialog(workspace.name(person) if person else "", words)
-        line = await self.app.push_screen_wait(dialog)
-        if line is not None:
-            try:
-                self._do(read_telling(line, lambda wanted: workspace.find_person(wanted).id))
-            except TangyError as error:
-                self._tell_now(str(error), "warn")
+        dialog = TellDialog(self._report, workspace.name(person) if person else "", words)
+        await self.app.push_screen_wait(dialog)
+
+    def _report(self, line: str) -> None:
+        """Tell Tangy what staff report about a person; raises TangyError if it is refused."""
+        workspace = self._workspace
+        command = read_telling(line, lambda wanted: workspace.find_person(wanted).id)
+        done = self.control.apply(command)
+        for one in done:
+            if isinstance(one, StaffNote) and one.kind in REFUSALS:
+                raise TangyError(noted_words(one, workspace.name, by_keys=True))
+        self._take(done)
 
     async def _learn(self, answer: Verified) -> list[Result]:
         """Carry out an answer, which takes time, and learn from it."""
