@@ -27,6 +27,7 @@ from tangy_tui.text.activities import stage_words
 from tangy_tui.text.endings import all_endings, ending_sentence
 from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.player_facts import look_after_lines
 from tangy_tui.text.report import WORLD_WORDS, care_lines
 from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import note_words, status_words
@@ -156,7 +157,7 @@ def _until(session: Session) -> str:
 
 def _care(session: Session) -> Iterator[str]:
     yield heading(say.CARE)
-    people = care_lines(
+    people = look_after_lines(session.player_facts, session.name) + care_lines(
         attention(session.replays).values(),
         lambda person: with_stay(session, person),
         session.replays,

@@ -17,7 +17,12 @@ from tangy_tui.text.changes import changed_words
 from tangy_tui.text.endings import TO_ITS_END, ending_sentence, ending_words
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted, of_times, often
-from tangy_tui.text.player_facts import HEADING, in_game_words, player_lines
+from tangy_tui.text.player_facts import (
+    HEADING,
+    in_game_words,
+    look_after_lines,
+    player_lines,
+)
 from tangy_tui.text.report import (
     FAULTS_SHORT,
     WORLD_WORDS,
@@ -237,7 +242,8 @@ def staff_fault_lines(session: Session) -> Iterator[str]:
 def care_part(session: Session) -> Iterator[str]:
     """Tell what staff should look after: people, and faults that are not over."""
     people = attention(session.replays).values()
-    told = care_lines(people, lambda one: with_stay(session, one), session.replays)
+    told = look_after_lines(session.player_facts, session.name)
+    told += care_lines(people, lambda one: with_stay(session, one), session.replays)
     if not told and not session.look_after:
         yield f"{CARE}: nothing."
         return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from tangy_profiles.declared.situation_words import value_words
 from tangy_tui.monitoring.player_facts import PlayerFacts
@@ -80,6 +80,19 @@ def player_lines(facts: PlayerFacts, name: Name) -> Iterator[str]:
             told.append(f"{UNCLEAR}: {counted(unclear, 'time')}")
         if told:
             yield f"  {name(person)}: {'; '.join(told)}"
+
+
+def look_after_lines(games: Iterable[PlayerFacts], name: Name) -> list[str]:
+    """Tell of whom a fact was true that staff should look after, and when."""
+    when = dict[tuple[str, str], list[str]]()
+    for facts in games:
+        declared = {fact.name: fact for fact in facts.facts}
+        for act in facts.acts:
+            fact = declared[act.fact]
+            if act.value in fact.attention:
+                told = name(act.person), value_words(fact, act.value)
+                when.setdefault(told, []).append(time_of_day(act.at))
+    return [f"{who}: {what} ({listed(times)})." for (who, what), times in when.items()]
 
 
 def _values(facts: PlayerFacts, person: str, at: int) -> str:

@@ -91,7 +91,7 @@ def teach(
         teaching.check()
         ears = listening.ears(workspace, teaching.phrasebook, who, sound=sound)
         if who == "scripted" and (speed is None or not full_screen()):
-            _teach_by_script(teaching, games, as_json)
+            _teach_by_script(workspace, teaching, games, as_json)
         elif screen:
             from tangy_tui.ui.run import run_teaching
 
@@ -123,7 +123,11 @@ def _again(wanted: str | None) -> Again | None:
     return Again(demonstration, int(step) - 1)
 
 
-def _teach_by_script(teaching: TeachingSession, games: int, as_json: bool) -> None:
+def _teach_by_script(
+    workspace: Workspace, teaching: TeachingSession, games: int, as_json: bool
+) -> None:
+    from tangy_tui.learning.coverage import coverage
+    from tangy_tui.learning.library import read_library
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
     from tangy_tui.learning.teaching_events import Finished, Next
     from tangy_tui.text.documents import demonstration_document
@@ -137,11 +141,13 @@ def _teach_by_script(teaching: TeachingSession, games: int, as_json: bool) -> No
         for event in scripted.demonstrate():
             if isinstance(event, Finished):
                 done.append(event.demonstration)
-                shown = {step.state.situation for d in done for step in d.steps}
                 if not as_json:
+                    library = read_library(workspace.store, workspace.activity.name)
+                    found = coverage(workspace.activity, library.finished)
                     game, steps = event.demonstration.seed, len(event.demonstration.steps)
-                    known = len(shown), len(teaching.activity.situations)
-                    print(coverage_so_far(number + 1, game, steps, *known))
+                    at = [*library.entries].index(event.demonstration.id) + 1
+                    known = len(found.seen), len(found.times)
+                    print(coverage_so_far(at, game, steps, *known))
     if as_json:
         common.print_json({"demonstrations": [demonstration_document(d) for d in done]})
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from html import escape
 from pathlib import Path
+from types import MappingProxyType
 from typing import cast
 from xml.etree import ElementTree
 
@@ -31,6 +33,7 @@ from tangy_tui.text.house import MONTH_COLUMNS, NOTHING, month_rows
 from tangy_tui.text.log import session_lines
 from tangy_tui.text.player_facts import HEADING
 from tangy_tui.text.report import call_rows, care_lines, people_table
+from tangy_tui.text.times import time_of_day
 from tests.hw.links import FakeLink
 from tests.support.declared import declared
 
@@ -167,3 +170,17 @@ def test_people_are_missed_only_if_tangy_visits_people(quiz: Quiz, activity: Act
 def test_a_report_without_player_facts_has_no_section_for_them(quiz: Quiz) -> None:
     session = quiz.session()
     assert session.player_facts == [] and "Answers and scores" not in session_page(session)
+
+
+def test_what_to_look_after_tells_who_and_when_if_the_file_says_so(quiz: Quiz) -> None:
+    declaration = quiz.activity.declaration
+    answer = replace(declaration.facts["answer"], attention=("wrong",))
+    facts = MappingProxyType({**declaration.facts, "answer": answer})
+    quiz.activity = replace(quiz.activity, declaration=replace(declaration, facts=facts))
+    played(quiz)
+    session = quiz.session()
+    (_, first, second) = session.player_facts[0].acts
+    times = " and ".join(time_of_day(act.at) for act in (first, second))
+    lines = list(session_lines(session))
+    assert lines[lines.index("What to look after:") + 1] == f"  Fritz: it is wrong ({times})."
+    assert f"Fritz: it is wrong ({times})." in session_page(session, full=False)

@@ -48,6 +48,17 @@ def test_learning_leads_to_the_conflicts_of_the_same_activity(tangy: Tangy, tmp_
     assert f"`tangy teach {options}`" in refused
 
 
+def test_the_scripted_teacher_counts_what_others_have_shown(tangy: Tangy, tmp_path: Path) -> None:
+    at = ("--activity", "memory", "--data", tmp_path / "d", "--teacher", "scripted")
+    first = tangy("teach", *at, "--seed", "1").stdout
+    assert first.startswith("Demonstration 1 ")
+    second = tangy("teach", *at, "--seed", "2").stdout
+    learnt = tangy("learn", *at[:4]).stdout
+    assert second.startswith("Demonstration 2 ")
+    shown = learnt.partition(": ")[2].partition(" situations")[0]
+    assert f"; {shown} situations were shown so far." in second
+
+
 def test_a_new_activity_takes_the_data_folder_along(tangy: Tangy, tmp_path: Path) -> None:
     new = ("activity", "new", tmp_path, "--title", "Our game", "--kind", "game", "--yes")
     done = tangy(*new, "--data", tmp_path / "d")

@@ -24,7 +24,8 @@ from tangy_profiles.declared.vocabulary import (
 )
 from tangy_profiles.reading import nearest
 
-KEYS = ("kind", "values", "per", "bands", "from", "options", "checks", "when", "steps")
+ATTENTION = "attention"
+KEYS = ("kind", "values", "per", "bands", "from", "options", "checks", "when", "steps", ATTENTION)
 MOST_FACTS, MOST_VALUES = 60, 20
 JUDGED_VALUES = 3
 """The values of a judged fact: no answer, a right one, a wrong one."""
@@ -124,6 +125,7 @@ def _read_fact(section: Section, name: str, columns: Sequence[str]) -> Fact:
         options=_columns(section, "options", columns),
         checks=(_columns(section, "checks", columns) or ("",))[0],
     )
+    fact = replace(fact, attention=_attention(section, fact))
     if "checks" in section and len(fact.values) != JUDGED_VALUES:
         problem = "an answer that is checked needs 3 values: none, right and wrong"
         section.wrong("values" if "values" in section else "checks", problem)
@@ -151,6 +153,18 @@ def _values(section: Section, kind: Kind, bands: Sequence[int]) -> tuple[str, ..
             if not 2 <= len(set(values)) == len(values) <= MOST_VALUES:
                 section.wrong("values", f"must be from 2 to {MOST_VALUES} texts, each another")
             return values or (NO, YES)
+
+
+def _attention(section: Section, fact: Fact) -> tuple[str, ...]:
+    """Read the values of a person's fact that the report names under what to look after."""
+    values = section.texts(ATTENTION, single=True)
+    if values and not (fact.per_player and fact.sources and fact.kind in ("choice", "flag")):
+        section.wrong(ATTENTION, "only values that people bring about, with 'per' and 'from'")
+        return ()
+    for one in values:
+        if one not in fact.values:
+            section.wrong(ATTENTION, f"{one!r} is not a value; {nearest(one, fact.values)}", one)
+    return values
 
 
 def _columns(section: Section, key: str, columns: Sequence[str]) -> tuple[str, ...]:

@@ -58,6 +58,8 @@ class Fact:
     built_in: bool = False
     words: tuple[str, ...] = ()
     """The words for each of the values (): made from the names."""
+    attention: tuple[str, ...] = ()
+    """The values after which staff should look after the person."""
 
     def band(self, number: float) -> str:
         """Return the band of a count, or of a timer's number of s."""
