@@ -129,8 +129,8 @@ def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
 
 
 def _named_facts(words: str) -> tuple[str, ...]:
-    """Return the facts that words name: "the clock and hinted are"."""
-    kept = re.sub(r"\b(?:is|are|the|happens|comes)\b", " ", words)
+    """Return the facts that words name: "the clock and hinted are", "the value of clock"."""
+    kept = re.sub(r"\b(?:is|are|(?:the )?values? of|the|happens|comes)\b", " ", words)
     return tuple(" ".join(one.split()) for one in re.split(r",| and | or ", kept) if one.strip())
 
 

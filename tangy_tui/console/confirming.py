@@ -15,7 +15,7 @@ from tangy_tui.app.confirmations import needed_confirmation
 from tangy_tui.app.game_commands import GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.console.typed_yes import TypedYes
-from tangy_tui.learning.teaching_events import Again, Discard, TeacherCommand
+from tangy_tui.learning.teaching_events import Again, Discard, Ruled, SameWhatever, TeacherCommand
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.confirmations import (
     NOT_DONE,
@@ -23,6 +23,7 @@ from tangy_tui.text.confirmations import (
     again_confirmation,
     confirmation_words,
     discard_confirmation,
+    rule_confirmation,
 )
 
 _NO_AND_MORE = re.compile(r"(?:n|no)\b[\s,.;:!]+(.+)", re.I)
@@ -138,7 +139,7 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
 
 
 class ConfirmingTeacher(TypedConfirmation[TeacherCommand]):
-    """Asks a teacher before steps of the demonstration are taken back or discarded."""
+    """Asks a teacher before steps are taken back or discarded, and before one becomes a rule."""
 
     def __init__(self, teaching: TeachingSession, yes: TypedYes, write: Write) -> None:
         """Ask about commands for a teaching session."""
@@ -154,6 +155,10 @@ class ConfirmingTeacher(TypedConfirmation[TeacherCommand]):
                 words = discard_confirmation(steps)
             case Again(present.id, kept) if 0 <= kept < steps:
                 words = again_confirmation(kept + 1, steps)
+            case SameWhatever():
+                rule = self._teaching.rules.would(present, command)
+                if isinstance(rule, Ruled):
+                    words = rule_confirmation(rule, self._teaching.activity)
         if words is None or not self._yes.typed:
             return command
         self._put(command, words)

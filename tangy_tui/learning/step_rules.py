@@ -49,8 +49,8 @@ class StepRules:
         found = tuple(RuleChoice(one, number) for one, number in covers if number)
         return found or NoRule("all shown")
 
-    def note(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
-        """Add a rule to the last step of a demonstration, or return why that is not possible."""
+    def would(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
+        """Return the rule that the last step of a demonstration would get, or why it cannot."""
         last = self._last_step(shown)
         if isinstance(last, NoRule):
             return last
@@ -62,13 +62,19 @@ class StepRules:
         covers = self._covered(activity, step, whatever)
         if not covers:
             return NoRule("all shown")
-        editor = Editor(self._store, activity)
+        return Ruled(len(shown.steps), step, whatever, tuple(covers))
+
+    def note(self, shown: Demonstration, command: SameWhatever) -> Ruled | NoRule:
+        """Add a rule to the last step of a demonstration, or return why that is not possible."""
+        ruled = self.would(shown, command)
+        if isinstance(ruled, NoRule):
+            return ruled
+        editor = Editor(self._store, self._activity)
         with self._store.transaction():
-            for situation in covers:
-                said = Resolution(situation, (step.behaviour,), frozenset(), whatever)
+            for situation in ruled.covers:
+                said = Resolution(situation, (ruled.step.behaviour,), frozenset(), ruled.facts)
                 editor.settle(said)
-        ruled = Ruled(len(shown.steps), step, whatever, tuple(covers))
-        self._noted.append((shown.id, ruled, len(covers)))
+        self._noted.append((shown.id, ruled, len(ruled.covers)))
         return ruled
 
     def take_back(self, shown: Demonstration) -> RuleUndone | None:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple, assert_never
 from tangy_tui.text import freezes, teaching
 
 if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
     from tangy_tui.app.confirmations import Confirmation
+    from tangy_tui.learning.teaching_events import Ruled
 
 
 class ConfirmationWords(NamedTuple):
@@ -89,6 +91,12 @@ def again_confirmation(first: int, last: int) -> ConfirmationWords:
     """Ask before steps are taken back; the word for redo is typed."""
     question, detail = teaching.again_words(first, last)
     return ConfirmationWords(question, detail.format(redo="redo"), teaching.GO_BACK, teaching.GO_ON)
+
+
+def rule_confirmation(rule: Ruled, activity: Activity) -> ConfirmationWords:
+    """Ask before a step becomes a rule."""
+    asked = teaching.rule_words_asked(rule, activity)
+    return ConfirmationWords(*asked, teaching.RULE, teaching.NO_RULE)
 
 
 NOT_DONE = "Not done."

@@ -178,16 +178,41 @@ def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
     if isinstance(event, NoRule):
         return _no_rule(event)
     rule = event if isinstance(event, Ruled) else event.rule
-    same = f"{activity.behaviour_words(rule.step.behaviour)}, whatever {listed(rule.facts, 'or')}"
+    same = f"{activity.behaviour_words(rule.step.behaviour)}, {_whatever(rule.facts)}"
     covers = counted(len(rule.covers), "more situation")
     if isinstance(event, Ruled):
-        return f"   Step {rule.number} is now a rule: {same}. It covers {covers}."
+        return (
+            f"   Step {rule.number} is now a rule: {same}. It covers {covers}. What is still to "
+            "show names them all the same: show one if something else is right there."
+        )
     return f"The rule of step {rule.number} is taken back: {same}. The step stays."
 
 
 def ruled_step(step: str, facts: Sequence[str]) -> str:
     """Format a step that is a rule: its words, and the facts that make no difference."""
-    return f"{step} · rule: whatever {listed(facts, 'or')}"
+    return f"{step} · rule: {_whatever(facts)}"
+
+
+RULE, NO_RULE = "make it a rule", "keep the step only"
+MOST_COVERED = 6
+"""The most situations that the question about a rule names."""
+
+
+def rule_words_asked(rule: Ruled, activity: Activity) -> tuple[str, str]:
+    """Ask before a step becomes a rule, and name the situations it covers."""
+    named = [activity.in_words(situation) for situation in rule.covers]
+    if (more := len(named) - MOST_COVERED) > 0:
+        named[MOST_COVERED:] = [f"{more} more"]
+    behaviour = activity.behaviour_words(rule.step.behaviour)
+    return (
+        f"Always {behaviour}, {_whatever(rule.facts)}?",
+        f"Tangy then does the same in: {'; '.join(named)}.",
+    )
+
+
+def _whatever(facts: Sequence[str]) -> str:
+    """Say that the values of some facts make no difference."""
+    return f"whatever the value of {listed(facts, 'or')}"
 
 
 def rule_question(step: Step, activity: Activity) -> str:
@@ -197,7 +222,7 @@ def rule_question(step: Step, activity: Activity) -> str:
 
 def whatever_words(choice: RuleChoice) -> str:
     """Name the facts that a rule ignores, as the rest of a sentence."""
-    return f"the {listed(choice.facts, 'or')} is"
+    return f"the value of {listed(choice.facts, 'or')}"
 
 
 def covers_words(covers: int) -> str:

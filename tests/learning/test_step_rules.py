@@ -9,6 +9,8 @@ import pytest
 from tangy_profiles.declared.situations import seen_facts
 from tangy_tui.app.teaching_grammar import read_teaching
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.confirming import ConfirmingTeacher
+from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import learn_policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
@@ -50,6 +52,7 @@ def ruled(teaching: TeachingSession, *facts: str) -> Ruled:
         ("the same whatever clock", ("clock",)),
         ("It is the same whatever the clock is", ("clock",)),
         ("always the same whatever the clock and hinted are", ("clock", "hinted")),
+        ("the same whatever the value of clock or hinted", ("clock", "hinted")),
         ("the same whatever happens", ()),
     ],
 )
@@ -108,3 +111,19 @@ def test_an_activity_without_facts_says_that_it_has_no_rules(tmp_path: Path) -> 
         session.apply(teacher.command())
     assert session.rules.choices(session.demonstration) == NoRule("no facts")
     assert session.apply(SameWhatever()) == [NoRule("no facts")]
+
+
+def test_a_typed_rule_is_only_made_after_a_yes(
+    workspace: Workspace, teaching: TeachingSession
+) -> None:
+    written: list[str] = []
+    asks = ConfirmingTeacher(teaching, TypedYes(terminal=True, setting="y"), written.append)
+    rule = SameWhatever(("clock",))
+    assert asks.ask(rule) is None and asks.open
+    assert "whatever the value of clock?" in written[0]
+    assert read_library(workspace.store, "trivia").resolutions == ()
+    would = teaching.rules.would(teaching.demonstration, rule)
+    assert isinstance(would, Ruled)
+    for situation in would.covers:
+        assert teaching.activity.in_words(situation) in written[0]
+    assert asks.ask(SameWhatever(("weather",))) == SameWhatever(("weather",)), "tells why not"

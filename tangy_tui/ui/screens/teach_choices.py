@@ -50,3 +50,16 @@ async def add_rule(screen: TeachScreen) -> None:
     if chosen is not None:
         screen.follow(SameWhatever(choices[int(chosen)].facts))
     screen.listen()
+
+
+async def confirm_rule(screen: TeachScreen, command: SameWhatever) -> None:
+    """Make the last step a rule, if the teacher agrees; otherwise tell why it cannot be one."""
+    teaching = screen.teaching
+    rule = teaching.rules.would(teaching.demonstration, command)
+    if not isinstance(rule, NoRule):
+        asked = text.rule_words_asked(rule, teaching.activity)
+        if not await screen.alone(ConfirmDialog(*asked, yes=text.RULE, no=text.NO_RULE)):
+            screen.listen()
+            return
+    screen.follow(command)
+    screen.listen()

@@ -9,6 +9,7 @@ from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, Same
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.text.teaching import left_words
 from tangy_tui.ui.base import perform
+from tangy_tui.ui.screens.teach_choices import confirm_rule
 from tangy_tui.ui.widgets.command_bar import CommandBar
 
 if TYPE_CHECKING:
@@ -22,8 +23,11 @@ def follow_word(screen: TeachScreen, word: TeachingWord | None, typed: str) -> N
             screen.follow(Say(typed))
         case StopCommand():
             screen.app.run_worker(screen.run_action("app.stop"))
-        case Undo() | Redo() | Finish() | Next() | SameWhatever():
+        case Undo() | Redo() | Finish() | Next():
             screen.follow(word)
+        case SameWhatever():
+            screen.query_one(CommandBar).ready()
+            screen.run_worker(confirm_rule(screen, word), name="rule")
         case Discard():
             screen.action_discard()
         case Leave():
