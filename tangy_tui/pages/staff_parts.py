@@ -14,6 +14,9 @@ from tangy_tui.text import staff_report as staff
 from tangy_tui.text.sessions import status_words
 from tangy_tui.text.times import day_and_time, time_of_day
 
+FEW_ROWS = 10
+"""Of more actions of staff, a printed page has two columns."""
+
 STYLE = """
 .called { display: flex; flex-wrap: wrap; gap: .15rem .5rem; margin: .3rem 0;
   font-variant-numeric: tabular-nums; }
@@ -23,9 +26,14 @@ STYLE = """
 @media print { :root { font-size: 10pt; } body { font-size: 9.5pt; line-height: 1.35; }
   h1 { font-size: 15pt; }
   h2 { font-size: 12pt; margin: 10pt 0 2pt; } h3 { font-size: 10pt; margin: 6pt 0 2pt; }
-  th, td { padding: 1pt 4pt; } .people table { font-size: 8.5pt; line-height: 1.25; }
+  table { font-size: 8pt; line-height: 1.2; } th, td { padding: .5pt 4pt; }
+  .called { gap: 0 .45rem; font-size: 9pt; margin: 1pt 0; }
+  .staff td:nth-child(-n+2) { white-space: nowrap; width: 1%; }
+  .staff.long { columns: 2; column-gap: 14pt; }
   .wide { margin: 2pt 0; } .care { padding: 3pt 8pt; margin: 4pt 0; }
-  dl { margin: 4pt 0; } figure { margin: 4pt 0; } @page { margin: 12mm; } }
+  dl { margin: 4pt 0; font-size: 9pt; gap: 0 1rem; line-height: 1.25; }
+  p { margin: 2pt 0; } .key { font-size: 8pt; margin: 2pt 0; gap: 0 .8rem; }
+  .game figcaption { display: none; } figure { margin: 4pt 0; } @page { margin: 10mm 12mm; } }
 """
 
 
@@ -84,7 +92,12 @@ def staff_part(session: Session) -> Iterator[str]:
     """List the actions of staff, with times."""
     rows = staff.staff_rows(session.replays, session.name)
     yield heading(staff.STAFF)
-    yield table(staff.STAFF_COLUMNS, rows) if rows else paragraph(staff.NO_STAFF)
+    if not rows:
+        yield paragraph(staff.NO_STAFF)
+        return
+    yield f'<div class="staff{" long" if len(rows) > FEW_ROWS else ""}">'
+    yield table(staff.STAFF_COLUMNS, rows)
+    yield "</div>"
 
 
 def faults_part(session: Session) -> Iterator[str]:

@@ -16,8 +16,10 @@ from tangy_tui.text.sessions import status_words
 
 WIDTH, LEFT, RIGHT = 1000, 118, 18
 """The layout of the drawing in its own units; the names of the lanes are at the left."""
-AXIS, BAND, TICKS, LANE, MARKS = 26, 26, 24, 26, 28
-"""Heights: the axis, the stages, speech to all, one person, one row of faults."""
+AXIS, BAND, TICKS, MARKS = 26, 26, 24, 28
+"""Heights: the axis, the stages, speech to all, one row of faults."""
+LANE, NARROW, MANY = 26, 19, 8
+"""The height of one person's lane, and of each of more people than so many."""
 STEPS = (1, 2, 5, 10, 15, 20, 30, 60, 120, 240, 480)
 MOST_TICKS = 11
 INKS = (1, 3, 4, 6, 5, 2)
@@ -84,7 +86,8 @@ def timeline(
     top_band = AXIS
     top_ticks = top_band + BAND + 6
     top_people = top_ticks + TICKS
-    top_faults = top_people + LANE * len(people) + 4
+    lane = LANE if len(people) <= MANY else NARROW
+    top_faults = top_people + lane * len(people) + 4
     height = top_faults + MARKS * max(fault_rows, 1) + 8
     parts = [
         *_axis(scale, height),
@@ -96,9 +99,9 @@ def timeline(
     ]
     waits = _waits(replay, scale)
     for place, person in enumerate(people):
-        top = top_people + LANE * place
-        parts.append(_label(names.get(person, person), top + LANE / 2))
-        parts += _person(replay, person, scale, top, waits[person])
+        top = top_people + lane * place
+        parts.append(_label(names.get(person, person), top + lane / 2))
+        parts += _person(replay, person, scale, top + lane / 2, waits[person])
     parts.append(_label("faults", top_faults + MARKS / 2))
     if not spans:
         parts.append(_text(LEFT, top_faults + MARKS / 2, "none", "dim"))
@@ -197,9 +200,8 @@ def _waits(replay: GameReplay, scale: Scale) -> dict[str, list[Span]]:
 
 
 def _person(
-    replay: GameReplay, person: str, scale: Scale, top: float, waits: Sequence[Span]
+    replay: GameReplay, person: str, scale: Scale, middle: float, waits: Sequence[Span]
 ) -> Iterator[str]:
-    middle = top + LANE / 2
     yield f'<line class="base" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{middle}" y2="{middle}"/>'
     for span in waits:
         x, end = scale.x(span.begun), scale.x(span.over)

@@ -93,11 +93,12 @@ def did_words(noted: Noted, name: Name) -> str:
         case "took back":
             return f"took a call back: {detail}"
         case "claim right":
-            return f"had {_card(detail, person)} checked: it wins"
+            return f"had {card_words(detail, person)} checked: it wins"
         case "claim late":
-            return f"had {_card(detail, person)} checked: it wins, too, but another card was first"
+            card = card_words(detail, person)
+            return f"had {card} checked: it wins, too, but another card was first"
         case "claim wrong":
-            return f"had {_card(detail, person)} checked: it does not win yet"
+            return f"had {card_words(detail, person)} checked: it does not win yet"
         case "patterns":
             return f"let the game go on for: {detail}"
         case "rules":
@@ -165,11 +166,12 @@ def action_words(noted: Noted, name: Name) -> str:
         case "took back":
             return f"a call was taken back: {detail}"
         case "claim right":
-            return f"{_card(detail, person)} was checked: it wins"
+            return f"{card_words(detail, person)} was checked: it wins"
         case "claim late":
-            return f"{_card(detail, person)} was checked: it wins, too, but another card was first"
+            card = card_words(detail, person)
+            return f"{card} was checked: it wins, too, but another card was first"
         case "claim wrong":
-            return f"{_card(detail, person)} was checked: it does not win yet"
+            return f"{card_words(detail, person)} was checked: it does not win yet"
         case "patterns":
             return f"the game went on for: {detail}"
         case "rules":
@@ -209,7 +211,8 @@ def _autonomy_words(level: str) -> str:
     return level if known is None else f"it {autonomy_words(known)}"
 
 
-def _card(number: str, person: str) -> str:
+def card_words(number: str, person: str) -> str:
+    """Name a card by its number and the person who has it; the person may be unknown."""
     return f"{person}'s card {number}" if person else f"card {number}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 from datetime import datetime, timedelta
+from typing import NamedTuple
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.contacts import EXPERT
@@ -13,8 +14,15 @@ from tangy_tui.monitoring.done import Done
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.replay import GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
+from tangy_tui.text.numbers import listed
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_actions import by_staff, chosen_words, did_words, with_behaviour
+from tangy_tui.text.staff_actions import (
+    by_staff,
+    card_words,
+    chosen_words,
+    did_words,
+    with_behaviour,
+)
 from tangy_tui.text.times import time_of_day
 
 STAFF = "What staff did"
@@ -33,32 +41,57 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
+ONE_ROUND = timedelta(minutes=2)
+"""Cards that staff have checked in vain one after the other, in this time, share a row."""
 SHOWN_EXPERT = "was shown whom to call"
 """For "expert called", if Tangy called nobody itself."""
 
 
 def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str, str]]:
     """Return the actions of staff: local time, who, and what."""
-    rows: list[tuple[str, str, str]] = []
-    last = ("", "")  # who did the last row, and whether it set the pace
+    rows: list[_Act] = []
     for replay in replays:
-        for at, who, words, paced in sorted(_done_by_staff(replay, name), key=lambda one: one[0]):
-            if paced and last == (who, "pace"):
-                rows.pop()  # keys change it step by step: the last one counts
-            last = (who, "pace" if paced else "")
-            rows.append((time_of_day(at.isoformat()), who, words))
-    return rows
+        for act in sorted(_done_by_staff(replay, name), key=lambda one: one.at):
+            before = rows[-1] if rows else act
+            same = act.did == before.did and act.who == before.who and act is not before
+            if same and act.did == "pace":
+                rows[-1] = act  # keys change it step by step: the last one counts
+            elif same and act.did == "claim wrong" and act.at - before.at <= ONE_ROUND:
+                rows[-1] = before._replace(cards=(*before.cards, *act.cards))
+            else:
+                rows.append(act)
+    return [(time_of_day(one.at.isoformat()), one.who, _act_words(one)) for one in rows]
 
 
-def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, str, str, bool]]:
-    """Yield when staff did something in a game, who, what, and whether it set the pace."""
+def _act_words(act: _Act) -> str:
+    if len(act.cards) < 2:
+        return act.words
+    return f"had {listed(act.cards)} checked: none of them wins yet"
+
+
+class _Act(NamedTuple):
+    """What a member of staff did, and which cards they had checked, if they did so."""
+
+    at: datetime
+    who: str
+    words: str
+    did: str = ""
+    cards: tuple[str, ...] = ()
+
+
+def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[_Act]:
+    """Yield what staff did in a game."""
     calls = (moment.what for moment in replay.moments)
     called = {call.fault for call in calls if isinstance(call, CallMade) and call.role == EXPERT}
     answered = ("", "")  # the answer that the next behaviour carries out, and for whom
     for moment in replay.moments:
         what, at = moment.what, datetime.fromisoformat(moment.at)
         if (told := _staff_words(moment, replay.activity, name, called)) is not None:
-            yield at, *told, isinstance(what, Noted) and what.did == "pace"
+            act = _Act(at, *told)
+            if isinstance(what, Noted):
+                card = card_words(what.detail, name(what.person) if what.person else "")
+                act = act._replace(did=what.did, cards=(card,))
+            yield act
         if isinstance(what, Moved) and what.move.answer:
             answered = (what.move.answer, what.move.target)
         elif isinstance(what, Noted) and what.did == "answered":
@@ -67,7 +100,7 @@ def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[tuple[datetime, s
             whom = what.target or ""
             if answered != (what.behaviour, whom):  # after staff took over, in an older log
                 words = chosen_words(replay.activity, what.behaviour, whom, name)
-                yield at - _lasted(what, replay), what.teacher, words, False
+                yield _Act(at - _lasted(what, replay), what.teacher, words)
             answered = ("", "")
 
 

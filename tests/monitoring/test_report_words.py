@@ -6,13 +6,18 @@ from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import cast
 
+import pytest
+
 from tangy_profiles.activity import load_activity
 from tangy_profiles.game_records import CallMade, GameChange, RecoveryEvent
+from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.monitoring.attention import Attention
 from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.house import PersonInGame, PersonOverTime, RobotLog
 from tangy_tui.monitoring.people_progress import Progress
-from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Noted
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
+from tangy_tui.monitoring.session import Session
+from tangy_tui.pages.staff_parts import FEW_ROWS, staff_part
 from tangy_tui.text.house import GAME_COLUMNS, game_rows, strategy_rows
 from tangy_tui.text.report import changes_lines
 from tangy_tui.text.results import response_line
@@ -74,3 +79,34 @@ def test_the_expert_counts_as_called_only_if_tangy_called() -> None:
         "was shown whom to call: Emergency stop pressed",
         "called the expert: Emergency stop pressed",
     ]
+
+
+def checked(minute: float, person: str, card: str, *, wins: bool = False) -> Moment:
+    did: StaffActionKind = "claim right" if wins else "claim wrong"
+    return moment(minute, Noted(did, "Nina", person=person, detail=card))
+
+
+def test_cards_checked_in_vain_one_after_the_other_share_a_row() -> None:
+    replay = GameReplay(
+        ONE,
+        [
+            checked(1, "user1", "38"), checked(1.1, "user2", "21"), checked(1.2, "", "17"),
+            checked(1.3, "user1", "111", wins=True), checked(1.4, "user2", "220"),
+            checked(8, "user1", "38"),
+        ],
+    )  # fmt: skip
+    assert [what for _, _, what in staff_rows([replay], NAMES.__getitem__)] == [
+        "had Ada's card 38, Bob's card 21 and card 17 checked: none of them wins yet",
+        "had Ada's card 111 checked: it wins",
+        "had Bob's card 220 checked: it does not win yet",
+        "had Ada's card 38 checked: it does not win yet",
+    ]
+
+
+@pytest.mark.parametrize(("count", "columns"), [(FEW_ROWS, False), (FEW_ROWS + 1, True)])
+def test_a_long_list_of_what_staff_did_is_printed_in_two_columns(
+    count: int, *, columns: bool
+) -> None:
+    noted = [moment(n, Noted("paused", "Nina")) for n in range(count)]
+    session = cast(Session, SimpleNamespace(replays=[GameReplay(ONE, noted)], name=str))
+    assert ('class="staff long"' in "".join(staff_part(session))) is columns

@@ -10,7 +10,7 @@ import pytest
 from tangy_profiles.state import FRONT
 from tangy_tui.monitoring.attention import attention_in
 from tangy_tui.monitoring.replay import GameReplay
-from tangy_tui.pages.timeline import stages_of, timeline
+from tangy_tui.pages.timeline import LANE, MANY, NARROW, stages_of, timeline
 from tests.monitoring.test_attention import replay_of, state
 
 
@@ -49,3 +49,14 @@ def test_a_number_that_is_called_during_a_visit_has_its_tick() -> None:
     replay = replace(replay, moments=moments)
     drawn = timeline(replay, {}, {}, {stage: stage for stage in stages_of([replay])})
     assert drawn.count('class="tick"') == 1
+
+
+def test_a_drawing_of_many_people_is_low_enough_to_print() -> None:
+    def height(people: int) -> float:
+        replay = replay_of(state(FRONT), state(FRONT))
+        replay.game = replace(replay.game, people=tuple(f"user{n}" for n in range(people)))
+        drawn = timeline(replay, {}, {}, {stage: stage for stage in stages_of([replay])})
+        return float(drawn.split('viewBox="0 0 1000 ')[1].split('"')[0])
+
+    assert height(MANY) - height(MANY - 1) == LANE
+    assert height(MANY + 4) - height(MANY + 3) == NARROW
