@@ -174,7 +174,7 @@ def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -
 SKIP = "Play the rest of the game at once?"
 SKIP_DETAIL = "Then you see the last step, and what Tangy has learnt of the people."
 ANOTHER = "Play another game?"
-ANOTHER_DETAIL = "It begins as soon as this one is over."
+ANOTHER_DETAIL = "It begins as soon as this one is over. To end this one, type: end."
 SEEN = "Have you seen this fault?"
 LEAVE = "Leave in the middle of the game?"
 LEAVE_DETAIL = "The game ends here, and the log says so. Tangy keeps what it has learnt. {report}"
@@ -255,8 +255,8 @@ def dropped_words(games: int) -> str:
     """Tell that the games that were to follow are dropped if staff leave; "" if none was."""
     if games < 1:
         return ""
-    return (
-        "The game that was to follow is dropped."
-        if games == 1
-        else (f"The {games} games that were to follow are dropped.")
+    one = games == 1
+    which = (
+        "The game that was to follow is" if one else f"The {games} games that were to follow are"
     )
+    return f"{which} dropped. To play {'it' if one else 'them'}: go on, and type: end."
