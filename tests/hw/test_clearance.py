@@ -101,6 +101,19 @@ class TestPeople:
     def test_the_robot_stops_for_a_person_crossing_its_path(self) -> None:
         assert past(Twist(0.5, 0.0), person(0.6, 0.45, 0.0, -1.2)) == STILL
 
+    def test_the_robot_drives_away_slowly_from_a_walker_who_would_reach_it(self) -> None:
+        behind = person(-1.2, 0.2, 1.2)
+        away = past(Twist(0.5, 0.2), behind)
+        assert 0 < away.forward <= LIMITS.people_speed
+        assert past(away, behind) == away
+        assert past(Twist(0.5, 0.2), person(-1.2, 0.2, 0.3)) == Twist(0.5, 0.2)
+
+    def test_the_robot_does_not_outrun_a_walker_who_comes_from_the_side(self) -> None:
+        side = person(-0.1, 0.95, 0.2, -1.2)
+        assert past(Twist(0.5, 0.0), side) == STILL
+        assert past(Twist(0.25, 0.3), side) == STILL
+        assert past(Twist(0.5, 0.0), replace(side, vy=1.2)) == Twist(0.5, 0.0)
+
     def test_the_robot_slows_down_while_a_walker_is_hidden_behind_it(self) -> None:
         behind = replace(person(-1.2, 0.2, 0.8), hidden=True)
         assert past(Twist(0.5, 0.2), behind) == Twist(

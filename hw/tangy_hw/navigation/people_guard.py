@@ -6,15 +6,18 @@ faster than they walked lately. When it is driven by hand, it also assumes that 
 set off at a walking pace. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s of
 the standard, with which a robot could never drive up to a seat. Only motion that brings the robot
 nearer to a person than stopping does is limited: the robot may drive away from a person who
-approaches it.
+approaches it. From a walker who would reach it before it stands it drives away slowly, and only if
+they stay behind it: somebody who comes from the side is ahead of a robot that turns towards them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import cos, radians
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import STILL, Twist
 from tangy_hw.navigation.limits import MotionLimits
@@ -28,6 +31,7 @@ NEARER = 0.005  # metres by which driving must be worse than stopping, for stand
 FURTHER, WALKS = 0.01, 0.25  # m by which driving must be better, for walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
 FRESH = 0.5  # seconds for which a new track is assumed to approach fast
+BEHIND = cos(radians(110.0))  # of the bearing from which on a walker is behind the robot
 END = 0.15  # metres of a body beyond a return without a track
 
 
@@ -138,12 +142,24 @@ def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
     near = driving < bodies.apart + bodies.approach * times[:, None]
     if (near & (driving < standing + bodies.leeway)).any():
         return False
+    walkers = near & (bodies.leeway > 0.0)
+    if twist.forward and walkers.any():
+        slowly = abs(twist.forward) <= limits.people_speed
+        front = people - robot[:, None] if twist.forward > 0.0 else robot[:, None] - people
+        if not slowly or (walkers & _not_behind(front, turned)).any():
+            return False
     if not bodies.turned.any():
         return True
     driving = _off(bodies.at - robot[:, None], turned, limits)
     standing = _off(bodies.at[None], np.zeros(1), limits)
     near = (driving < bodies.apart + bodies.turned * times[:, None]) & (bodies.turned > 0)
     return not bool((near & (driving < standing + bodies.leeway)).any())
+
+
+def _not_behind(people: Floats, turned: Floats) -> NDArray[np.bool_]:
+    """Return which people (times, n, 2) are not behind a robot turned by (times,) rad."""
+    bearing = np.arctan2(people[..., 1], people[..., 0]) - turned[:, None]
+    return np.asarray(np.cos(bearing) > BEHIND)
 
 
 def _off(people: Floats, turned: Floats, limits: MotionLimits) -> Floats:
