@@ -39,7 +39,34 @@ def examples() -> Examples:
         },
         claim=cards["rules"]["claim"],
         kinds={name: kind for kind, name in NEW_ACTIVITIES.items()},
+        said={k: _said(base_text(k), *_ends(base_text(k))) for k in NEW_ACTIVITIES if k != CARDS},
     )
+
+
+def _ends(text: str) -> tuple[str, str]:
+    """Return the behaviours of a file that begin and end a game."""
+    file = tomllib.loads(text)
+    last = next(name for name, one in file["behaviours"].items() if "finish" in one.get("does", ()))
+    return file["expected"][0][-1], last
+
+
+def _said(text: str, first: str, last: str) -> tuple[str, str]:
+    """Return the first text of each of two behaviours of a file."""
+    behaviours = tomllib.loads(text)["behaviours"]
+    return behaviours[first]["says"][0], behaviours[last]["says"][0]
+
+
+def with_ends(text: str, welcome: str, goodbye: str) -> str:
+    """Return a file that begins and ends its games with these sentences.
+
+    A behaviour that begins with its sentence already keeps its other texts.
+    """
+    names = _ends(text)
+    for name, now, said in zip(names, _said(text, *names), (welcome, goodbye), strict=True):
+        if said and said != now:
+            says = rf'(^\[behaviours\."{re.escape(name)}"\]\n(?:(?!\[).*\n)*?says = )\[.*\]$'
+            text = _edited(text, [(says, rf'\g<1>["{_quoted(said)}"]')])
+    return text
 
 
 def written_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -24,6 +24,8 @@ ITEM, TURNS, ROUNDS, WIN_AT = "item", "turns", "rounds", "win-at"
 CLAIM, PATTERN, NUMBERS = "claim", "pattern", "numbers"
 ASK, RIGHT, WRONG, HINT = "ask", "right", "wrong", "hint"
 PICTURE, SOUND = "picture", "sound"
+WELCOME, GOODBYE = "welcome", "goodbye"
+SENTENCES = (WELCOME, GOODBYE)
 
 ROWS: Mapping[str, tuple[str, ...]] = {
     QUIZ: (ASK, RIGHT, WRONG, HINT),
@@ -77,12 +79,14 @@ class Examples(NamedTuple):
         patterns: what can win a game with cards, with the shapes of each.
         claim: what people call if they have won.
         kinds: the kind of each such activity by its name.
+        said: for kinds, the sentences that begin and end a game; `{title}` is its title.
     """
 
     rows: Mapping[str, int]
     patterns: Mapping[str, tuple[str, ...]]
     claim: str
     kinds: Mapping[str, str]
+    said: Mapping[str, tuple[str, str]]
 
 
 @dataclass
@@ -146,6 +150,8 @@ class Draft:
                 number += 1
         if self.kind in MOST_ROUNDS and self.table_size() > 1:
             yield ROUNDS
+        if self.kind in self.examples.said:
+            yield from SENTENCES
 
     def open(self) -> str | None:
         """Return the first question without an answer; None: all have one."""
@@ -177,6 +183,9 @@ class Draft:
         base, number = split_key(key)
         if number and base == self.fields[0]:
             return ""
+        if base in SENTENCES:
+            said = self.examples.said.get(self.kind, ("", ""))[SENTENCES.index(base)]
+            return said.format(title=self.said.get(TITLE, ""))
         if base == CLAIM:
             return self.examples.claim
         if base == PATTERN:
@@ -197,7 +206,7 @@ class Draft:
     def answer(self, key: str, text: str) -> Problem | None:
         """Take an answer; return why it cannot be taken."""
         base, number = split_key(key)
-        text = kept(text, quotes=bool(number))
+        text = kept(text, quotes=bool(number) or base in SENTENCES)
         typed = text
         if text == NOTHING:
             if number > 1 and base == self.fields[0]:
@@ -236,7 +245,7 @@ class Draft:
 
     def _fit_rounds(self) -> None:
         """Fit the rounds to the table; ask the author who chose more than it now has."""
-        if ROUNDS not in self.said or ROUNDS in self.given or self.open() is not None:
+        if ROUNDS not in self.said or ROUNDS in self.given or self.open() not in (None, *SENTENCES):
             return
         if not self.own_rounds:
             self.said[ROUNDS] = str(self._usual_rounds())
@@ -288,7 +297,7 @@ class Draft:
         base, number = split_key(key)
         if not text and self.default(key) is None:
             return Problem("letters" if base == TITLE else "empty")
-        longest = LONGEST if number else LONGEST_TITLE
+        longest = LONGEST if number or base in SENTENCES else LONGEST_TITLE
         if len(text) > longest:
             return Problem("long", (str(longest),))
         if base == TITLE:

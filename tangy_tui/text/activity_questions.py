@@ -21,7 +21,10 @@ NOTHING_WRITTEN = "Nothing is written."
 WRITE = "Shall Tangy write it? (y: yes · n: no · back · a number: change that answer)"
 WRITE_AGAIN = "Please type y, n, back, or one of the numbers above."
 ONE_MOMENT = "One moment: Tangy checks the activity, and plays a game of it."
-BEGINS = "A game of it begins like this:"
+BEGINS = "A game of it goes like this:"
+LEFT_OUT = "... ({} left out)"
+ENDS_OF_TEMPLATES = ("Welcome to {title}!", "That was {title}. Goodbye!")
+"""What the files of talks and games say first and last."""
 CHECKED = "Tangy has checked it, and found no mistake."
 WITH_MISTAKES = "Tangy cannot play this yet. Change the answer that it is about:"
 NOTHING = "nothing"
@@ -49,6 +52,8 @@ QUESTIONS: Mapping[str, str] = {
     new.PATTERN: "What wins? Type its number or its name:",
     new.NUMBERS: "What is the highest number, 40 to 75? The fewer, the shorter the game:",
     new.ROUNDS: "How many of them come up in one game?",
+    new.WELCOME: "What does Tangy say to welcome people?",
+    new.GOODBYE: "What does Tangy say at the very end?",
     new.ASK: "Question {n}, as Tangy should ask it",
     new.RIGHT: "The right answer:",
     new.WRONG: "One to five wrong answers, with commas:",
@@ -101,6 +106,8 @@ LABELS: Mapping[str, str] = {
     new.PATTERN: "what wins",
     new.NUMBERS: "highest number",
     new.ROUNDS: "in one game",
+    new.WELCOME: "welcome",
+    new.GOODBYE: "at the end",
     new.ASK: "question",
     "song": "song",
     "move": "movement",

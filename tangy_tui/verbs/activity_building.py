@@ -14,6 +14,18 @@ from tangy_tui.text.game_template import game_file
 
 
 def built(draft: Draft, imported: Sequence[ChoiceQuestion] = ()) -> tuple[str, str]:
+    """Return the activity's file with the author's welcome and goodbye, and its table.
+
+    Args:
+        draft: the answers to all questions.
+        imported: the questions of a quiz that were read from a file.
+    """
+    toml, table = _built(draft, imported)
+    said = [draft.said.get(one, "") for one in new.SENTENCES]
+    return bases.with_ends(toml, *said) if any(said) else toml, table
+
+
+def _built(draft: Draft, imported: Sequence[ChoiceQuestion]) -> tuple[str, str]:
     """Return the activity's file, and its table ("": it needs none).
 
     Args:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import sys
 import tempfile
-from itertools import islice
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Annotated
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
     from tangy_tui.app.new_activity import Draft
     from tangy_tui.app.question_files import ChoiceQuestion
 
-SHOWN = 8
-"""Steps of a game that the preview shows."""
+SHOWN, SHOWN_LAST = 8, 3
+"""The first and the last steps of a game that the preview shows."""
 FIRST_ROW = 1
 
 
@@ -54,6 +53,8 @@ def activity_new(
     claim: Annotated[str | None, typer.Option(help="Cards: what people call out to win.")] = None,
     pattern: Annotated[str | None, typer.Option(help="Cards: what wins, such as a line.")] = None,
     numbers: Annotated[int | None, typer.Option(help="Cards: the highest number.")] = None,
+    welcome: Annotated[str | None, typer.Option(help="What Tangy says to welcome people.")] = None,
+    goodbye: Annotated[str | None, typer.Option(help="What Tangy says at the very end.")] = None,
     yes: Annotated[
         bool, typer.Option("--yes", help="Ask nothing: what no option says is as usual.")
     ] = False,
@@ -68,9 +69,12 @@ def activity_new(
     from tangy_tui.app import new_activity as new
     from tangy_tui.app.activity_bases import examples
     from tangy_tui.app.question_files import read_questions
+    from tangy_tui.text.activity_questions import ENDS_OF_TEMPLATES
     from tangy_tui.verbs.activity_writing import LARGEST_QUESTIONS
 
-    draft = new.Draft(folder, examples())
+    offered = examples()
+    said = {**offered.said, new.TALK: ENDS_OF_TEMPLATES, new.GAME: ENDS_OF_TEMPLATES}
+    draft = new.Draft(folder, offered._replace(said=said))
     read = list["ChoiceQuestion"]()
     if questions is not None:
         text = read_given_text(questions, LARGEST_QUESTIONS).lstrip("\ufeff")
@@ -91,6 +95,8 @@ def activity_new(
             new.CLAIM: claim,
             new.PATTERN: pattern,
             new.NUMBERS: numbers,
+            new.WELCOME: welcome,
+            new.GOODBYE: goodbye,
         },
     )
     if row:
@@ -225,6 +231,7 @@ def _made(draft: Draft, read: list[ChoiceQuestion], *, show: bool) -> list[str]:
     from tangy_tui.app.trying import tried_game
     from tangy_tui.text import activity_questions as words
     from tangy_tui.text.activities import people_did, tried_lines
+    from tangy_tui.text.numbers import counted
     from tangy_tui.verbs.activity import checked_file
     from tangy_tui.verbs.activity_building import built
 
@@ -241,7 +248,13 @@ def _made(draft: Draft, read: list[ChoiceQuestion], *, show: bool) -> list[str]:
             return [plain(line) for line in checked.mistakes]
         if show and draft.kind != CARDS:
             print(f"\n{words.BEGINS}")
-            for step in islice(tried_game(activity, 4, 1), SHOWN):
+            steps = list(tried_game(activity, 4, 1))
+            left_out = steps[SHOWN:-SHOWN_LAST]
+            for step in steps:
+                if step in left_out:
+                    if step is left_out[0]:
+                        _show(words.LEFT_OUT.format(counted(len(left_out), "step")))
+                    continue
                 lines = (*tried_lines(step), people_did(step.doing, step.silent))
                 _show(*(line for line in lines if line))
         if show:

@@ -93,7 +93,7 @@ milk, silk
 def test_questions_are_asked_again_until_they_fit_and_can_be_gone_back_to(
     tangy: Tangy, tmp_path: Path
 ) -> None:
-    made = tangy("activity", "new", tmp_path, stdin=f"!\n{QUIZ}\ny\n")
+    made = tangy("activity", "new", tmp_path, stdin=f"!\n{QUIZ}\n\n\ny\n")
     assert (made.returncode, made.stderr) == (0, "")
     for problem in ("yes", "letters", "same"):
         assert made.stdout.count(PROBLEMS[problem]) == 1
@@ -111,7 +111,7 @@ def test_answers_can_be_changed_by_their_number_and_rows_removed(
     tangy: Tangy, tmp_path: Path
 ) -> None:
     changes = "1\nMeadow quiz\n6\nWhich flower pricks?\n\n\n\n7\n-\ny\n"
-    made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n{changes}")
+    made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n\n\n{changes}")
     assert (made.returncode, made.stderr) == (0, "")
     assert not (tmp_path / "garden-quiz.toml").exists()
     _, *rows = csv.reader((tmp_path / "meadow-quiz.csv").read_text("utf-8").splitlines())
@@ -122,7 +122,7 @@ def test_answers_can_be_changed_by_their_number_and_rows_removed(
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", ["n\n", "", "back\n"])
 def test_nothing_is_written_without_a_yes(ending: str, tangy: Tangy, tmp_path: Path) -> None:
-    made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n{ending}")
+    made = tangy("activity", "new", tmp_path, stdin=f"{QUIZ}\n\n\n{ending}")
     assert made.returncode == (0 if ending == "n\n" else 2)
     assert list(tmp_path.glob("garden*")) == []
 
@@ -226,7 +226,7 @@ def drafted(tmp_path: Path, *answers: str) -> Draft:
 
 
 def test_the_rounds_follow_the_table_unless_the_author_chose_them(tmp_path: Path) -> None:
-    draft = drafted(tmp_path, "Moves", "exercises", "Nod", "Slowly", "6", "")
+    draft = drafted(tmp_path, "Moves", "exercises", "Nod", "Slowly", "6", "", "", "")
     assert draft.open() is None  # of one movement, one comes up
     draft.reopen("move.2")
     for said in ("Wave", "Gently", "five times", "Clap", "Softly", "", "", ""):
@@ -264,3 +264,25 @@ def test_a_picture_can_be_named_by_its_whole_path(tmp_path: Path) -> None:
     draft = drafted(tmp_path, "Ours", "quiz", "", "", "y", "Who?", "me", "you", "")
     assert draft.answer("picture.1", str(tmp_path / "rose.png")) is None
     assert draft.said["picture.1"] == "rose.png"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [one for one in KINDS if one != "cards"])
+def test_a_game_begins_and_ends_with_the_sentences_of_its_author(
+    kind: str, tangy: Tangy, tmp_path: Path
+) -> None:
+    ends = ("--welcome", 'Hello, "dear" all!', "--goodbye", "See you soon.")
+    made = tangy("activity", "new", tmp_path, "--title", "Ours", "--kind", kind, "--yes", *ends)
+    assert (made.returncode, made.stderr) == (0, "")
+    tried = tangy("activity", "try", tmp_path / "ours.toml").stdout
+    said = [line for line in tried.splitlines() if "Tangy says: " in line]
+    assert said[0] == '   Tangy says: Hello, "dear" all!'
+    assert said[-1] == "   Tangy says: See you soon."
+
+
+@pytest.mark.slow
+def test_the_preview_goes_to_the_end_of_the_game(tangy: Tangy, tmp_path: Path) -> None:
+    asked = tangy("activity", "new", tmp_path, stdin="Ours\nsongs\n" + "\n" * 4 + "n\n")
+    assert "What does Tangy say to welcome people? [Welcome! Who feels" in asked.stdout
+    assert "left out)" in asked.stdout
+    assert "Tangy says: Goodbye, and keep humming!" in asked.stdout
