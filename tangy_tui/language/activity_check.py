@@ -154,6 +154,11 @@ def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             why = "always stops the robot" if stop else "is an answer to Tangy's questions"
             word = distinct_word(phrasebook, phrase.behaviour, phrase)
             such = f", such as {word!r}" if word else ""
+            if phrase.words == words_of(phrase.behaviour):
+                place, change = f"behaviours[{phrase.behaviour}]", "give it another name"
+                such = such.replace(", such as", ", with a word such as")
+                yield f"{activity.source}: {place}: this name {why}; {change}{such}."
+                continue
             yield (
                 f"{activity.source}: {_place(activity, phrase)}: "
                 f"it {why}; ask for it with another word{such}."

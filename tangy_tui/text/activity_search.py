@@ -22,6 +22,10 @@ MOST_SHARES = 3
 """How many of the facts that multiply the states most are named."""
 MOST_SITUATIONS = 6
 """How many situations without a way to the end are listed."""
+POSSIBLE_ALWAYS = "From then on only these are possible:"
+EXPECTED_ALWAYS = "From then on 'expected' names only these:"
+IN_VAIN = "(Tangy cannot do it here: look at its 'needs' and 'to')"
+"""Said of what would end the game."""
 BUILT_IN = {
     ITEMS: "the rounds",
     TURN: "the turns",
@@ -58,7 +62,9 @@ def finding_words(source: str, found: ActivityFlaw) -> str:
                 f"people do something: {found.text}; expect something else after a timer"
             )
         case "never ends":
-            words = f"stages: from here no game can end: {found.name}"
+            as_expected = found.dead_end is not None and found.dead_end.as_expected
+            games = "a game as in 'expected' never ends" if as_expected else "no game can end"
+            words = f"stages: from here {games}: {found.name}"
         case "nothing possible":
             words = (
                 f"behaviours: here none of them is possible: {found.name}; check 'needs' and 'to'"
@@ -82,9 +88,12 @@ def dead_end_lines(activity: DeclaredActivity, found: ActivityFlaw) -> Iterator[
         yield from (f"     then {_event_words(event)}" for event in step.then)
     if found.flaw == "nothing possible":
         return
-    yield "From then on only these are possible:"
+    yield EXPECTED_ALWAYS if end.as_expected else POSSIBLE_ALWAYS
     for situation, behaviours in islice(end.counterexample.possible.items(), MOST_SITUATIONS):
-        yield f"  {activity.in_names(situation)} -> {', '.join(behaviours)}"
+        named = ", ".join(
+            f"{one} {IN_VAIN}" if activity.behaviours[one].ends else one for one in behaviours
+        )
+        yield f"  {activity.in_names(situation)} -> {named}"
     more = len(end.counterexample.possible) - MOST_SITUATIONS
     if more > 0:
         yield f"  and {counted(more, 'more situation')}"

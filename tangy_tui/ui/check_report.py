@@ -40,7 +40,8 @@ def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
 
 def print_checked(checked: CheckedFile, activity: Activity | None) -> None:
     """Print the results of checking an activity's file."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = Console(highlight=False)
+    console.soft_wrap = not console.is_terminal
     if activity is not None and not checked.mistakes:
         words = ", ".join(
             counted(number, noun)

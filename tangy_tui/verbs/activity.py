@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import sys
+from collections.abc import Iterable
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,6 +14,7 @@ import typer
 from tangy_profiles.activity_parts import GAME, VISIT
 from tangy_profiles.defaults import DEFAULT_ACTIVITY, TO_BEGIN_WITH
 from tangy_profiles.errors import ProfileError, TangyError
+from tangy_profiles.given_file import lines_of
 from tangy_profiles.reading import plain
 from tangy_tui.text.remarks import no_own_phrase
 from tangy_tui.verbs.common import (
@@ -23,6 +26,7 @@ from tangy_tui.verbs.common import (
     Users,
     hand_on_options,
     print_json,
+    print_line,
 )
 from tangy_tui.verbs.opening import open_workspace
 
@@ -117,7 +121,8 @@ def activity_check(
         for book in rules:
             check_report.print_rules(book)
         for line in mistakes:
-            print(plain(line), file=sys.stderr)
+            for part in line.split("\n"):
+                print_line(plain(part), to=sys.stderr)
     if mistakes:
         raise typer.Exit(2)
 
@@ -168,7 +173,7 @@ def activity_try(
             continue
         for line in (*tried_lines(step), people_did(step.doing, step.silent)):
             if line:
-                print(plain(line))
+                print_line(plain(line))
     print_json({"steps": steps, "finished": True}) if as_json else print(TRIED)
 
 
@@ -276,25 +281,40 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
     except ProfileError as error:
         return CheckedFile(plain(Path(name).name), (str(error),)), None
     checked = check_activity(activity, robot, load_room().placed(load_people(SHOWN)))
+    if checked.mistakes:  # the search can take long: mend these first
+        return replace(checked, mistakes=with_lines(checked.mistakes, name)), activity
     if isinstance(activity, DeclaredActivity):
         found = findings(activity)
-        flaws = [
-            "\n    ".join(
-                plain(line)
-                for line in (finding_words(activity.source, one), *dead_end_lines(activity, one))
-            )
-            for one in found.flaws
-        ]
-        told = search_lines(found, teams=bool(activity.teams))
-        notes = map(plain, (*separator_notes(activity), *uneven_notes(activity), *told))
+        flaws, mistakes = list[str](), list[str]()
+        for one in found.flaws:
+            lines = (finding_words(activity.source, one), *dead_end_lines(activity, one))
+            told = "\n    ".join(map(plain, lines))
+            mistakes.append(told) if one.endless else flaws.append(told)
+        searched = search_lines(found, teams=bool(activity.teams))
+        notes = map(plain, (*separator_notes(activity), *uneven_notes(activity), *searched))
         warnings = (
             *map(plain, table_lines(activity)),
             *checked.warnings,
             *flaws,
             *map(plain, without_words(activity)),
         )
-        checked = replace(checked, warnings=warnings, notes=tuple(notes))
+        checked = replace(checked, mistakes=tuple(mistakes), warnings=warnings, notes=tuple(notes))
     return checked, activity
+
+
+def with_lines(mistakes: Iterable[str], name: str) -> tuple[str, ...]:
+    """Add the line of the behaviour that a mistake names, if an activity is given by its file."""
+    from tangy_profiles.toml_lines import line_of
+
+    path = Path(name)
+    if not path.is_file():
+        return tuple(mistakes)
+    text, found = lines_of(path.read_bytes()), list[str]()
+    for mistake in mistakes:
+        named = re.match(r"([^:]+): behaviours\[(.+?)\]", mistake)
+        line = line_of(text, ("behaviours", named[2])) if named is not None else None
+        found.append(mistake if line is None else mistake.replace(":", f":{line}:", 1))
+    return tuple(found)
 
 
 def _activity_document(name: str, activity: Activity) -> dict[str, Any]:

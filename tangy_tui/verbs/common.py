@@ -11,7 +11,7 @@ from dataclasses import fields
 from inspect import Parameter, Signature
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TextIO, TypeVar, get_type_hints
 
 import typer
 
@@ -103,9 +103,10 @@ def as_given(data: Path | None, users: int = REGISTERED) -> str:
     return folder + ("" if users == REGISTERED else f" --users {users}")
 
 
-def print_line(line: str) -> None:
-    """Print a line at once; on a terminal, wrap it between words."""
-    print(fitted(line, _columns()), flush=True)
+def print_line(line: str, to: TextIO | None = None) -> None:
+    """Print a line at once, to a stream (default: stdout); on a terminal, wrap it between words."""
+    out = to or sys.stdout
+    print(fitted(line, _columns(out)), file=out, flush=True)
 
 
 def fitted(line: str, columns: int) -> str:
@@ -120,10 +121,10 @@ def fitted(line: str, columns: int) -> str:
     )  # fmt: skip
 
 
-def _columns() -> int:
+def _columns(out: TextIO) -> int:
     """Return the width of the terminal for output; 0 if it is none."""
     try:
-        return os.get_terminal_size(sys.stdout.fileno()).columns if sys.stdout.isatty() else 0
+        return os.get_terminal_size(out.fileno()).columns if out.isatty() else 0
     except (OSError, ValueError):  # it is closed, or has no file descriptor
         return 0
 

@@ -10,7 +10,7 @@ from tangy_profiles.activity import shipped_activities
 from tangy_profiles.declared.checking import findings
 from tangy_profiles.declared.search import Limit
 from tangy_profiles.declared.state_keys import TELLING
-from tangy_tui.text.activity_search import dead_end_lines, finding_words, search_lines
+from tangy_tui.text.activity_search import IN_VAIN, dead_end_lines, finding_words, search_lines
 from tests.support.changed import changed_trivia
 from tests.support.declared import DECLARED, declared
 
@@ -61,7 +61,34 @@ def test_a_game_that_never_ends_as_expected_is_a_flaw(tmp_path: Path) -> None:
     assert ("never ends", "over · told is no") in flaws(tmp_path, round_and_round)
     lines = way_there(tmp_path, round_and_round)
     assert "     then player 1: answer is right" in lines
-    assert lines[-1] == "  over · told is no -> allow time"
+    assert lines[-2:] == [
+        "From then on 'expected' names only these:",
+        "  over · told is no -> allow time",
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("change", "endless"),
+    [
+        (('["over", "told is no", "tell scores"],', '["over", "told is no", "allow time"],'), True),
+        (('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]'), True),
+        (("", ""), False),
+    ],
+)
+def test_only_a_game_that_never_ends_is_endless(
+    change: tuple[str, str], endless: bool, tmp_path: Path
+) -> None:
+    found = findings(changed_trivia(tmp_path, change)).flaws
+    assert [one.endless for one in found] == [True] * endless
+
+
+@pytest.mark.slow
+def test_an_end_that_lacks_what_it_needs_is_said_to_be_impossible(tmp_path: Path) -> None:
+    lines = way_there(
+        tmp_path, ('does = ["finish"]', 'needs = ["greeted is no"]\ndoes = ["finish"]')
+    )
+    assert not any("close quiz" in line and IN_VAIN not in line for line in lines)
 
 
 @pytest.mark.slow

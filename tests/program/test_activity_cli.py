@@ -21,6 +21,8 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.monitoring.rules import check_rules
 from tangy_tui.text.rules import together_words
+from tangy_tui.verbs.activity import checked_file
+from tests.support.changed import changed_trivia
 
 Tangy = Callable[..., CompletedProcess[str]]
 SHIPPED = shipped_activities()["bingo"].read_text(encoding="utf-8")
@@ -268,6 +270,32 @@ def test_a_phrase_that_is_a_stop_or_an_answer_is_refused_with_a_suggestion(
     assert f"behaviours[joke].phrases = '{phrase}': it {why}; " in found
     word = found.partition("another word, such as ")[2].strip("'.")
     assert not mistakes(tmp_path, with_phrases(("tell a joke", f"{word} {phrase}")))
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "told"),
+    [
+        (
+            ('"allow time"', '"stop the game"'),
+            "stop the game",
+            "this name always stops the robot; give it another",
+        ),
+        (
+            ('[behaviours."allow time"]', '[behaviours."allow time"]\nposture = "clap"'),
+            "allow time",
+            "'clap'",
+        ),
+    ],
+)
+def test_a_mistake_is_told_with_its_line_before_the_search(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: tuple[str, str], name: str, told: str
+) -> None:
+    monkeypatch.setattr("tangy_profiles.declared.checking.findings", None)  # it would fail
+    path = tmp_path / changed_trivia(tmp_path, change).source
+    (line,) = checked_file(str(path), load_robot())[0].mistakes
+    number = path.read_text("utf-8").splitlines().index(f'[behaviours."{name}"]')
+    assert line.startswith(f"{path.name}:{number + 1}: behaviours[")
+    assert told in line
 
 
 def test_a_phrase_that_sounds_like_one_with_a_person_names_it(tmp_path: Path) -> None:

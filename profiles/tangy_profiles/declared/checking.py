@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from time import thread_time
 from typing import Literal
@@ -54,6 +54,8 @@ class ActivityFlaw:
     name: str
     text: str = ""
     dead_end: DeadEnd | None = None
+    endless: bool = False
+    """No game ends: none that goes as expected, or none at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +111,9 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
         left = Limit(limit.states, until - thread_time())
         slots, in_vain, one = _played_as_expected(activity, players, left)
         note(players, one, as_expected=True)
-    flaws = list(islice(_dead_ends(activity, found), 1))
+    dead = list(_dead_ends(activity, found))
+    endless = any(_is_endless(one.dead_end) for one in dead)
+    flaws = [replace(one, endless=endless) for one in dead[:1]]
     flaws += islice(_idle(activity, found), 1)
     flaws += () if flaws else in_vain  # a dead end explains it
     missing = tuple(_missing(activity, tried))
@@ -123,6 +127,10 @@ def findings(activity: DeclaredActivity, limit: Limit = LIMIT) -> Findings:
     ]
     flaws += _unused_facts(activity)
     return Findings(tuple(flaws), tuple(one for one, _ in found), () if whole else missing)
+
+
+def _is_endless(end: DeadEnd | None) -> bool:
+    return end is not None and (end.as_expected or not end.counterexample.way)
 
 
 def _dead_ends(
