@@ -16,6 +16,7 @@ from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen, Menu
 from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.screens.set_up import SetUpScreen
@@ -79,6 +80,25 @@ async def test_a_line_is_found_by_its_letter_or_its_name(
         pilot.type(*keys)
         await pilot.pause()
         assert pilot.app.screen.query_one(Menu).chosen.name == name
+
+
+@pytest.mark.parametrize("letters", ["t", "m", "call"])
+async def test_the_help_opens_after_any_letters(
+    letters: str, run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        pilot.type(*letters, "question_mark")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+
+
+async def test_a_second_letter_that_begins_no_name_is_still_a_key(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock()), notifications=True) as pilot:
+        pilot.type("m", "m")  # the mouse off and on again
+        await pilot.pause()
+        await pilot.pause()
+        assert len(pilot.app._notifications) == 2
 
 
 @pytest.mark.slow

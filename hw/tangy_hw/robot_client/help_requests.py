@@ -63,12 +63,13 @@ class HelpRequestTracker:
         return {p: since for p, since in signs.items() if p not in aside} | self._by_word
 
     def sign_of(self, person: str) -> SignState:
-        """Return why a person's sign would not count now, "" if it would."""
+        """Return why a person's sign would not count now, "" if it would; it changes nothing."""
         if self._device is None:
             return "no sensor"
         if not self._sees:
             return "silent"
-        return "set aside" if person in self.signs and person not in self.all else ""
+        aside = person in self._aside | self._unseen and person not in self._by_word
+        return "set aside" if aside and person in self.signs else ""
 
     @property
     def raised(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
+from tangy_hw.robot_client.count_down import CountDown
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_profiles.activity import Activity
 from tangy_profiles.cards import Deck
@@ -82,8 +83,7 @@ class LivePlan(PlannedGame):
     calls: CallOrder
     over: bool
     requests: HelpRequestTracker
-    _due: float
-    _held_since: float | None = None
+    _count_down: CountDown
     _room: Room
 
     def say(
@@ -202,26 +202,15 @@ class LivePlan(PlannedGame):
     @property
     def calls_in(self) -> float:
         """Time in s until the next number may be called."""
-        since = self._held_since
-        return max(0.0, self._due - (self.link.time if since is None else since))
+        return self._count_down.seconds
 
     def hold_calls(self, *, held: bool) -> None:
         """Hold the count-down to the next call, or let it go on where it was."""
-        if held and self._held_since is None:
-            self._held_since = self.link.time
-        elif not held and self._held_since is not None:
-            self._due += self.link.time - self._held_since
-            self._held_since = None
-
-    def _count_down(self) -> None:
-        """Count down to the next call from now, also while staff hold the count-down."""
-        self._due = self.link.time + self.pace
-        if self._held_since is not None:
-            self._held_since = self.link.time
+        self._count_down.hold(held=held)
 
     def set_pace(self, seconds: float) -> None:
         """Set the s between calls, also for the next call."""
-        self._due += seconds - self.pace
+        self._count_down.lengthen(seconds - self.pace)
         super().set_pace(seconds)
 
     def change(self, change: GameChange) -> None:

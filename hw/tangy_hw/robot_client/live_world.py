@@ -18,6 +18,7 @@ from tangy_hw.device_protocols import DeviceError, Picture, Pose
 from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
+from tangy_hw.robot_client.count_down import CountDown
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_hw.robot_client.live_plan import CallOrder, LivePlan
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
@@ -106,7 +107,7 @@ class LiveWorld(LivePlan):
         )
         self.sitting: dict[str, str] = {}
         """People seen at other places than their own in this game."""
-        self._due = 0.0  # when the next number may be called
+        self._count_down = CountDown(lambda: self.link.time)
 
     def begin(self) -> ActivityState:
         """Begin a new game and return its first state."""
@@ -222,7 +223,7 @@ class LiveWorld(LivePlan):
         match behaviour.effect:
             case "draw":
                 self.calls.count(numbers)
-                self._count_down()
+                self._count_down.begin(self.pace)
                 with suppress(Preempted):  # it counts as called, whatever happens now
                     self.commands.wait(min(self.pace, LOOK_SECONDS), asks=True)
             case "go to user":

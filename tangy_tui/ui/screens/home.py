@@ -59,6 +59,8 @@ CHOICES = (
 A_WORD = 3
 """So many letters in a row are words: fewer may be a change of mind."""
 LONGEST_WORD = 40
+HELP_CHARACTER = "?"
+"""Opens the help, also within a word."""
 MOVES = ("k", "j")
 """Letters that move the cursor: no word begins with them."""
 
@@ -138,17 +140,19 @@ class Menu(InkedWidget, can_focus=True):
     def on_key(self, event: events.Key) -> None:
         """Move the cursor to a choice by its letter or name; only Enter chooses."""
         by_letter = [one for one in self._choices if one.key == event.key]
-        letter = event.character is not None and event.character.isalpha()
-        in_word, moves = bool(self._typed), event.key in MOVES
+        typed, character = self._typed, event.character
+        letter = character is not None and (character.isalpha() or (bool(typed) and character == " "))
+        begins = letter and event.key not in MOVES
+        continues = letter if len(typed) == 1 else bool(typed) and character != HELP_CHARACTER
         if event.key == "backspace":
-            self._typed = self._typed[:-1]
-        elif event.is_printable and event.character and (in_word or (letter and not moves)):
-            self._typed = f"{self._typed}{event.character}"[-LONGEST_WORD:]
+            self._typed = typed[:-1]
+        elif event.is_printable and character and (continues or begins):
+            self._typed = f"{typed}{character}"[-LONGEST_WORD:]
         else:
             return
-        if in_word or by_letter:
-            event.stop()  # within a word no letter is a key of the program
         named = self._named(self._typed) if len(self._typed) > 1 else None
+        if by_letter or len(typed) > 1 or (typed and named is not None):
+            event.stop()  # within a word no letter is a key of the program
         for choice in [named] if named is not None else by_letter:
             self.point(choice.id)
 
