@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
 import pytest
 
+from tangy_profiles.activity import read_activity
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.told import told_now
 from tangy_profiles.declared.typed_observations import TypedObservation, meant, sayable
 from tests.support.declared import declared
 
 PLAYERS = ("user1", "user2", "user3")
+ACTIVITIES = Path(__file__).parents[1] / "support" / "activities"
 
 
 def _game(name: str, *done: str) -> DeclaredGame:
@@ -97,6 +103,28 @@ def test_staff_can_say_that_an_answer_was_right_or_wrong(said: str, value: str) 
     assert told.judgement == value
     game.observe(*told.meant)
     assert game.value("answer", "user1") == value
+
+
+@pytest.mark.parametrize(
+    ("said", "value"), [("False", "right"), ("wrong", "wrong"), ("true", "wrong")]
+)
+def test_the_right_answer_of_an_item_is_no_verdict_on_it(
+    said: str, value: str, tmp_path: Path
+) -> None:
+    for name in ("buzz.toml", "buzz.csv"):
+        shutil.copy(ACTIVITIES / name, tmp_path)
+    (tmp_path / "buzz.csv").write_text("ask,answer\nTrue or false: fish fly?,false\n")
+    file = tmp_path / "buzz.toml"
+    file.write_text(file.read_text().replace("rounds = 4", "rounds = 1"))
+    activity = read_activity(file)
+    assert isinstance(activity, DeclaredActivity)
+    game = DeclaredGame(activity.declaration, PLAYERS)
+    for behaviour in ("welcome all", "ask all"):
+        game.execute(behaviour, None)
+    found = meant(game, "user1", said)
+    assert found is not None
+    game.observe(*found)
+    assert game.value("guess", "user1") == value
 
 
 def test_an_answer_counts_only_while_its_question_is_open() -> None:

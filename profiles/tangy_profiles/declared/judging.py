@@ -49,6 +49,11 @@ def verdict(fact: Fact, said: str, *, negated: bool = False) -> str | None:
     return f"{VERDICT}{value}"
 
 
+def right_answers(fact: Fact, items: Items, row: int) -> list[str]:
+    """Return the right answers of an item to a fact that is judged, in plain words."""
+    return [plain_words(way) for way in items.value(row, fact.checks).split("|")]
+
+
 def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> str | None:
     """Return the value of a fact that an observation stands for.
 
@@ -71,8 +76,7 @@ def judged(fact: Fact, items: Items, row: int, raw: str, certainty: float) -> st
         return raw if raw in fact.values else None
     if raw.startswith(VERDICT) and raw.removeprefix(VERDICT) in fact.values[1:]:
         return raw.removeprefix(VERDICT)
-    right = [plain_words(way) for way in items.value(row, fact.checks).split("|")]
-    said = plain_words(raw)
+    right, said = right_answers(fact, items, row), plain_words(raw)
     if not said:
         return None
     offered = [plain_words(items.value(row, column)) for column in fact.options]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tangy_profiles.declared.acts import Act, take_in
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.judging import judged, plain_words, verdict
+from tangy_profiles.declared.judging import judged, plain_words, right_answers, verdict
 from tangy_profiles.declared.model import Fact
 from tangy_profiles.declared.vocabulary import ASKING, NO, YES
 
@@ -38,8 +38,8 @@ def can_be_told(game: DeclaredGame) -> tuple[Fact, ...]:
 def meant(game: DeclaredGame, who: str | None, words: str) -> TypedObservation | None:
     """Parse words about a player, or about the group (None).
 
-    An option of the current item has priority over a value, a value over a fact, and all of them
-    over a free answer, which may be any words.
+    An option or the right answer of the current item has priority over a value, a value over a
+    fact, and all of them over another free answer, which may be any words.
 
     Args:
         game: the game, with its current item.
@@ -125,6 +125,10 @@ def _answers(game: DeclaredGame, facts: tuple[Fact, ...], words: str) -> Iterato
     for fact in facts:
         if fact.options and judged(fact, items, game.row, words, 1.0) is not None:
             yield fact, words
+        elif fact.checks and not fact.options:
+            # "false" may be the answer to the item, and then is no verdict on it
+            if plain_words(words) in right_answers(fact, items, game.row):
+                yield fact, words
 
 
 def _values(facts: tuple[Fact, ...], said: str) -> Iterator[tuple[Fact, str]]:
