@@ -139,8 +139,12 @@ class Workspace(Participants):
     def call_options(self) -> CallOptions:
         """The options of a command that opens this activity and folder: those it cannot omit."""
         folder = self.store.folder
+        try:
+            chosen = chosen_activity(folder)
+        except ProfileError:  # a mistake in the file of the choice is no matter of this call
+            chosen = ""
         return {
-            "activity": "" if self.profile == chosen_activity(folder) else self.profile,
+            "activity": "" if self.profile == chosen else self.profile,
             "data": "" if folder == data_folder(None).absolute() else str(folder),
         }
 

@@ -28,9 +28,9 @@ def follow_up(words: str, *, activity: str = "", data: str = "", unfinished: boo
         command = found[1]
         verb = command.split()[0]
         given = ["--unfinished"] if unfinished and command in _OF_UNFINISHED else []
-        if activity and verb in _OF_AN_ACTIVITY:
+        if activity and verb in _OF_AN_ACTIVITY and f"--{ACTIVITY}" not in found[2]:
             given.append(f"--{ACTIVITY} {shlex.quote(activity)}")
-        if data and verb in _OF_A_FOLDER:
+        if data and verb in _OF_A_FOLDER and f"--{DATA}" not in found[2]:
             given.append(f"--{DATA} {shlex.quote(data)}")
         return plain(f"`tangy {' '.join([command + found[2], *given])}`")
 

@@ -70,3 +70,18 @@ def test_a_new_activity_takes_the_data_folder_along(tangy: Tangy, tmp_path: Path
 def test_checking_a_file_accepts_a_data_folder(tangy: Tangy, tmp_path: Path) -> None:
     done = tangy("activity", "check", "nothing-there", "--data", tmp_path)
     assert done.stderr.startswith("There is no activity 'nothing-there'")
+
+
+def test_an_option_that_a_command_has_is_not_added_again() -> None:
+    named = "`tangy policy show --activity trivia`"
+    assert follow_up(named, activity="my quiz.toml") == named
+
+
+def test_a_broken_choice_of_the_activity_spoils_no_call_that_names_one(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    folder = tmp_path / "data"
+    folder.mkdir()
+    (folder / "activity.toml").write_text("activity = [")
+    done = tangy("learn", "--activity", "trivia", "--data", folder)
+    assert "demonstrate a game first" in done.stderr, done.stderr
