@@ -121,14 +121,13 @@ def waits_for(game: DeclaredGame) -> str:
 
 
 def _answers(game: DeclaredGame, facts: tuple[Fact, ...], words: str) -> Iterator[tuple[Fact, str]]:
-    items = game.declaration.items
+    items, said = game.declaration.items, plain_words(words)
     for fact in facts:
-        if fact.options and judged(fact, items, game.row, words, 1.0) is not None:
+        free = fact.checks and not fact.options
+        # "false" may be the answer to the item, and then is no verdict on it
+        right = free and said in right_answers(fact, items, game.row)
+        if right or (fact.options and judged(fact, items, game.row, words, 1.0) is not None):
             yield fact, words
-        elif fact.checks and not fact.options:
-            # "false" may be the answer to the item, and then is no verdict on it
-            if plain_words(words) in right_answers(fact, items, game.row):
-                yield fact, words
 
 
 def _values(facts: tuple[Fact, ...], said: str) -> Iterator[tuple[Fact, str]]:

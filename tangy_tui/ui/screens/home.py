@@ -141,7 +141,7 @@ class Menu(InkedWidget, can_focus=True):
         """Move the cursor to a choice by its letter or name; only Enter chooses."""
         by_letter = [one for one in self._choices if one.key == event.key]
         typed, character = self._typed, event.character
-        letter = character is not None and (character.isalpha() or (bool(typed) and character == " "))
+        letter = (character or "").isalpha() or (bool(typed) and character == " ")
         begins = letter and event.key not in MOVES
         continues = letter if len(typed) == 1 else bool(typed) and character != HELP_CHARACTER
         if event.key == "backspace":
