@@ -6,15 +6,13 @@ them: the answers to later questions are kept.
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from tangy_profiles.reading import plain
+from tangy_tui.app.authors_words import has_number, kept, listed, name_of
 from tangy_tui.language.answers import yes_or_no
-from tangy_tui.language.words import NUMBERS as NUMBER_WORDS
 
 QUIZ, TALK, SONGS, EXERCISES = "quiz", "talk", "songs", "exercises"
 MEMORY, GAME, CARDS = "memory", "game", "cards"
@@ -55,11 +53,6 @@ YES_OR_NO = (POINTS, MEDIA, TURNS)
 CARD_ROWS = ("top", "middle", "bottom")
 MOST_WRONG, MOST_TEAMS = 5, 6
 LONGEST, LONGEST_TITLE = 200, 60
-LATIN = str.maketrans(
-    {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "æ": "ae", "œ": "oe", "ø": "oe", "ł": "l"}
-)
-"""Letters of file names that are more than a plain letter with an accent."""
-TENS = ("thirty", "forty", "fifty", "sixty", "hundred")
 NOTHING = "-"
 """Typed to leave empty what was answered before."""
 
@@ -317,7 +310,7 @@ class Draft:
             return Problem("teams", ("2", str(MOST_TEAMS)))
         if base == WRONG:
             return self._wrong_problem(text, self.said.get(row_key(RIGHT, number), ""))
-        if base == "times" and not _has_number(text):
+        if base == "times" and not has_number(text):
             return Problem("times")
         if base in (PICTURE, SOUND) and text and not (self.folder / text).is_file():
             return Problem("no file", (text, str(self.folder)))
@@ -336,20 +329,6 @@ class Draft:
         return Problem("same") if len(set(all_of_them)) < len(all_of_them) else None
 
 
-def name_of(title: str) -> str:
-    """Return the file name of a title, without a suffix: in plain letters and digits."""
-    latin = unicodedata.normalize("NFC", title.lower()).translate(LATIN)
-    bare = (c for c in unicodedata.normalize("NFKD", latin) if not unicodedata.combining(c))
-    kept_ = "".join(c if c.isascii() and c.isalnum() else " " for c in bare)
-    return "-".join(kept_.split())
-
-
-def _has_number(text: str) -> bool:
-    """Return whether a text holds a number, in digits or in words."""
-    words = text.lower().replace("-", " ").split()
-    return any(c.isdecimal() for c in text) or bool({*NUMBER_WORDS, *TENS}.intersection(words))
-
-
 def row_key(base: str, number: int) -> str:
     """Return the name of a question about a row of the table."""
     return f"{base}.{number}"
@@ -359,14 +338,3 @@ def split_key(key: str) -> tuple[str, int]:
     """Return a question's name and the number of its row, 0 if it is about no row."""
     base, _, number = key.partition(".")
     return base, int(number or 0)
-
-
-def listed(text: str) -> list[str]:
-    """Return the parts of an answer between commas, each once."""
-    return list(dict.fromkeys(one for part in text.split(",") if (one := part.strip())))
-
-
-def kept(text: str, quotes: bool) -> str:
-    """Return a line without the characters that mean something in the activity's files."""
-    dropped = "\\{}|" if quotes else '"\\{}|'
-    return " ".join("".join(c for c in plain(text) if c not in dropped).split())

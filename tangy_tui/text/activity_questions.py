@@ -6,7 +6,8 @@ import shlex
 from collections.abc import Mapping, Sequence
 
 from tangy_tui.app import new_activity as new
-from tangy_tui.app.new_activity import Draft, Problem, listed, row_key, split_key
+from tangy_tui.app.authors_words import listed
+from tangy_tui.app.new_activity import Draft, Problem, row_key, split_key
 from tangy_tui.text.numbers import counted
 
 BEGIN = (

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from tangy_tui.app import activity_bases as bases
 from tangy_tui.app import new_activity as new
-from tangy_tui.app.new_activity import Draft, listed
+from tangy_tui.app.authors_words import listed
+from tangy_tui.app.new_activity import Draft
 from tangy_tui.app.question_files import ChoiceQuestion, questions_table
 from tangy_tui.text import activity_questions as words
 from tangy_tui.text import activity_template as template

@@ -28,7 +28,7 @@ def activity_import(
     from tangy_profiles.defaults import QUESTIONS_ACTIVITY
     from tangy_profiles.given_file import read_given_text
     from tangy_tui.app import question_files
-    from tangy_tui.app.new_activity import name_of
+    from tangy_tui.app.authors_words import name_of
     from tangy_tui.text import activity_template as template
 
     questions = question_files.read_questions(

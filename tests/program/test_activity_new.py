@@ -11,7 +11,8 @@ from subprocess import CompletedProcess
 import pytest
 
 from tangy_tui.app.activity_bases import examples
-from tangy_tui.app.new_activity import KINDS, Draft, Problem, name_of
+from tangy_tui.app.authors_words import name_of
+from tangy_tui.app.new_activity import KINDS, Draft, Problem
 from tangy_tui.text.activity_questions import ENDS, ENDS_EMPTY, PROBLEMS, draft_lines
 from tests.support.media import make_picture
 
