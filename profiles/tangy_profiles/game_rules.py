@@ -14,6 +14,19 @@ LONGEST_PACE, SHORTEST_PACE, USUAL_PACE = 60.0, 5.0, 30.0
 PACES = (5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)
 """The paces, in s between calls, that staff step through."""
 
+COMMAND_WORDS = frozenset({
+    "abort", "acknowledge", "add", "all", "answer", "ask", "assist", "autonomy", "back",
+    "brake", "call", "can", "card", "cards", "cease", "clear", "cleared", "come", "continue",
+    "could", "drive", "emergency", "end", "enough", "exit", "expert", "faster", "faults",
+    "freeze", "give", "go", "guest", "halt", "help", "here", "how", "i", "is", "leave",
+    "left", "let", "look", "more", "move", "n", "next", "no", "now", "one", "pace",
+    "pattern", "patterns", "pause", "people", "phrases", "play", "please", "quit", "reached",
+    "repeat", "resume", "say", "seen", "send", "several", "slower", "step", "stop", "take",
+    "tangy", "that", "the", "visit", "visits", "void", "wait", "what", "when", "where",
+    "which", "who", "whoa", "whose", "why", "y", "yes", "you",
+})  # fmt: skip
+"""First words of what staff type in any game, so no word for a claim."""
+
 
 def next_pace(pace: float, by: int) -> float:
     """Return the next shorter (-1) or longer (1) pace in s; the last one stays."""
@@ -210,6 +223,8 @@ def read_game_rules(top: Table, deck: Deck, strategies: Sequence[str]) -> GameRu
     )
     if found.numbers_aloud and "{numbers}" not in found.more_numbers:
         raise rules.wrong("more_numbers", "must have {numbers} in it.")
+    if found.claim.casefold() in COMMAND_WORDS:
+        raise rules.wrong("claim", "begins a command of staff; choose another word.")
     rules.close()
     names = [one.name for one in patterns] + [one.name for one in strengths]
     if len(set(names)) < len(names):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from pathlib import Path
 
 from tangy_profiles.reading import plain
 from tangy_tui.language.words import NUMBERS as NUMBER_WORDS
@@ -37,3 +38,11 @@ def kept(text: str, quotes: bool) -> str:
     """Return a line without the characters that mean something in the activity's files."""
     dropped = "\\{}|" if quotes else '"\\{}|'
     return " ".join("".join(c for c in plain(text) if c not in dropped).split())
+
+
+def is_file(path: Path) -> bool:
+    """Return whether there is such a file; not if its name is too long for one."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False

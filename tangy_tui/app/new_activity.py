@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from tangy_tui.app.authors_words import has_number, kept, listed, name_of
+from tangy_profiles.game_rules import COMMAND_WORDS
+from tangy_tui.app.authors_words import has_number, is_file, kept, listed, name_of
 from tangy_tui.language.answers import yes_or_no
 
 QUIZ, TALK, SONGS, EXERCISES = "quiz", "talk", "songs", "exercises"
@@ -177,8 +178,7 @@ class Draft:
         if number and base == self.fields[0]:
             return ""
         if base in SENTENCES:
-            said = self.examples.said.get(self.kind, ("", ""))[SENTENCES.index(base)]
-            return said.format(title=self.said.get(TITLE, ""))
+            return self._usual_sentence(base, self.said)
         if base == CLAIM:
             return self.examples.claim
         if base == PATTERN:
@@ -186,6 +186,11 @@ class Draft:
         if base == "row":
             return CARD_ROWS[(number - 1) % len(CARD_ROWS)]
         return DEFAULTS.get(base)
+
+    def _usual_sentence(self, base: str, said: Mapping[str, str]) -> str:
+        """Return the welcome or goodbye that fits the kind and title among some answers."""
+        usual = self.examples.said.get(said.get(KIND, QUIZ), ("", ""))[SENTENCES.index(base)]
+        return usual.format(title=said.get(TITLE, ""))
 
     def _usual_rounds(self) -> int:
         """Return the rounds of a game, as many for each team if the table has enough."""
@@ -212,6 +217,8 @@ class Draft:
             text = self.default(key) or ""
         text = self._meant(base, text)
         if (problem := self._problem(key, text)) is None:
+            if key in (TITLE, KIND):
+                self._drop_sentences(key, text)
             self.said[key] = text
             self.before.pop(key, None)
             if key == ROUNDS and typed:
@@ -236,8 +243,20 @@ class Draft:
             if key in self.said:
                 self.before[key] = self.said.pop(key)
 
+    def _drop_sentences(self, key: str, text: str) -> None:
+        """Drop the sentences that only fit the former title and kind, if this one changes."""
+        former = {**self.said, **self.before}
+        if former.get(key, text) == text:
+            return
+        for one in SENTENCES:
+            if one not in self.given and former.get(one) == self._usual_sentence(one, former):
+                self.said.pop(one, None)
+                self.before.pop(one, None)
+
     def _fit_rounds(self) -> None:
         """Fit the rounds to the table; ask the author who chose more than it now has."""
+        if self.kind not in MOST_ROUNDS:
+            return
         if ROUNDS not in self.said or ROUNDS in self.given or self.open() not in (None, *SENTENCES):
             return
         if not self.own_rounds:
@@ -288,6 +307,8 @@ class Draft:
 
     def _problem(self, key: str, text: str) -> Problem | None:
         base, number = split_key(key)
+        if KIND in self.said and not self._takes(base):
+            return Problem("other kind")
         if not text and self.default(key) is None:
             return Problem("letters" if base == TITLE else "empty")
         longest = LONGEST if number or base in SENTENCES else LONGEST_TITLE
@@ -306,13 +327,15 @@ class Draft:
             return Problem("one of", tuple(self.examples.patterns))
         if base == CLAIM and not (text.isascii() and text.isalpha()):
             return Problem("word")
+        if base == CLAIM and text in COMMAND_WORDS:
+            return Problem("command", (text,))
         if base == TEAMS and text and not 2 <= len(listed(text)) <= MOST_TEAMS:
             return Problem("teams", ("2", str(MOST_TEAMS)))
         if base == WRONG:
             return self._wrong_problem(text, self.said.get(row_key(RIGHT, number), ""))
         if base == "times" and not has_number(text):
             return Problem("times")
-        if base in (PICTURE, SOUND) and text and not (self.folder / text).is_file():
+        if base in (PICTURE, SOUND) and text and not is_file(self.folder / text):
             return Problem("no file", (text, str(self.folder)))
         low, high = (1, self.table_size()) if base == ROUNDS else RANGES.get(base, (0, 0))
         if high and not (text.isdecimal() and low <= int(text) <= high):
@@ -320,6 +343,15 @@ class Draft:
         if base == NUMBERS and int(text) % 5:
             return Problem("fives")
         return None
+
+    def _takes(self, base: str) -> bool:
+        """Return whether the kind has a question, in some row or after some answers."""
+        if base == ROUNDS:
+            return self.kind in MOST_ROUNDS
+        if base in SENTENCES:
+            return self.kind in self.examples.said
+        of_some = {one for keys in BEFORE.values() for one in keys}
+        return base not in of_some or base in BEFORE.get(self.kind, ())
 
     def _wrong_problem(self, text: str, right: str) -> Problem | None:
         wrong = listed(text)

@@ -84,6 +84,7 @@ PROBLEMS: Mapping[str, str] = {
     "one of": "Please type a number from 1 to {count}, or one of: {all}.",
     "yes": "Please type y or n.",
     "word": "Please type one word, in plain letters.",
+    "command": "Staff type {0} for something else in games. Please choose another word.",
     "teams": "Please type from {0} to {1} names, with commas between them, or only Enter.",
     "wrong answers": "Please type from {0} to {1} wrong answers, with commas between them.",
     "same": "Two of the answers are the same. Please type wrong answers that differ.",
@@ -93,6 +94,7 @@ PROBLEMS: Mapping[str, str] = {
     "fives": "Please type a number that 5 divides: 40, 45, 50 ...",
     "no fields": "Please type all parts of it, with ; between them: {all}.",
     "no rows": "This kind has no rows.",
+    "other kind": "This is for another kind of activity.",
 }
 LABELS: Mapping[str, str] = {
     new.TITLE: "name",

@@ -23,7 +23,8 @@ def built(draft: Draft, imported: Sequence[ChoiceQuestion] = ()) -> tuple[str, s
     """
     toml, table = _built(draft, imported)
     said = [draft.said.get(one, "") for one in new.SENTENCES]
-    return bases.with_ends(toml, *said) if any(said) else toml, table
+    ends = draft.kind in draft.examples.said and any(said)
+    return bases.with_ends(toml, *said) if ends else toml, table
 
 
 def _built(draft: Draft, imported: Sequence[ChoiceQuestion]) -> tuple[str, str]:

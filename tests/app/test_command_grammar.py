@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import get_args
 
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_rules import COMMAND_WORDS
 from tangy_tui.app.command_grammar import FIXED, MEANINGS, read_answer, read_command
 from tangy_tui.app.game_commands import (
     AUTONOMY,
@@ -31,7 +33,8 @@ from tangy_tui.app.game_commands import (
     Tell,
     VoidResponse,
 )
-from tangy_tui.app.inquiry_grammar import read_inquiry
+from tangy_tui.app.inquiry_grammar import INQUIRIES, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
+from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.teaching_grammar import AgainFrom, Leave, Perform, read_screen, read_teaching
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.learning.verification import Reply, StopCommand
@@ -203,3 +206,11 @@ def test_other_questions_do_not_ask_why(text: str) -> None:
 def test_messages_are_asked_for_by_their_word() -> None:
     assert read_screen("messages") == Perform("messages")
     assert read("messages") is None
+
+
+def test_no_command_of_staff_begins_with_a_word_that_may_be_a_claim() -> None:
+    listed = [part for words, _ in MEANINGS for part in re.split(r"[,;] ", words)]
+    commands = [*FIXED, *listed, *INQUIRIES, *WHO_IS_HERE, *WHOSE_CARDS, "stop"]
+    first = {one.split()[0].strip(":,") for one in commands}
+    assert first - COMMAND_WORDS <= {"NAME", "?", CHECK}
+    assert BINGO.rules.claim not in COMMAND_WORDS

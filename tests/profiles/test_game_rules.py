@@ -69,6 +69,7 @@ def test_a_strength_excludes_strategies_that_it_does_not_name() -> None:
         ('name = "frame"', 'name = "x"', "patterns"),
         ('claim_right = "Card {card}', 'claim_right = "Card {person}', "claim_right"),
         ("unvisited = 15", "unvisited = -1", "unvisited"),
+        ('claim = "bingo"', 'claim = "Left"', r"claim = 'Left' \(line 90\).*command of staff"),
         ('strategies = ["neutral"]', "strategies = []", "strategies"),
     ],
 )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import tomllib
 from collections.abc import Callable
+from itertools import permutations
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -13,7 +15,15 @@ import pytest
 from tangy_tui.app.activity_bases import examples
 from tangy_tui.app.authors_words import name_of
 from tangy_tui.app.new_activity import KINDS, Draft, Problem
-from tangy_tui.text.activity_questions import ENDS, ENDS_EMPTY, PROBLEMS, draft_lines
+from tangy_tui.text.activity_questions import (
+    ENDS,
+    ENDS_EMPTY,
+    ENDS_OF_TEMPLATES,
+    PROBLEMS,
+    answers,
+    draft_lines,
+)
+from tangy_tui.verbs.activity_building import built
 from tests.support.media import make_picture
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -153,6 +163,11 @@ def test_pictures_of_questions_are_shown_and_must_exist(tangy: Tangy, tmp_path: 
         (("--rounds", "0"), "--rounds: Please type a number from 1"),
         (("--kind", "cards", "--row", "x"), "--row: This kind has no rows."),
         (("--kind", "cards", "--numbers", "52"), "--numbers: Please type a number that 5 divides"),
+        (("--kind", "talk", "--row", "a", "--row", "b", "--rounds", "2"), "--rounds: This is for"),
+        (("--kind", "cards", "--welcome", "Hi all"), "--welcome: This is for another kind"),
+        (("--kind", "talk", "--teams", "Reds, Blues"), "--teams: This is for another kind"),
+        (("--row", f"Who?; me; you; ; {'ä' * 150}"), "--row: There is no ää"),
+        (("--kind", "cards", "--claim", "Left"), "--claim: Staff type left for something else"),
     ],
 )
 def test_an_option_that_cannot_be_taken_is_named(
@@ -287,3 +302,73 @@ def test_the_preview_goes_to_the_end_of_the_game(tangy: Tangy, tmp_path: Path) -
     assert "What does Tangy say to welcome people? [Welcome! Who feels" in asked.stdout
     assert "left out)" in asked.stdout
     assert "Tangy says: Goodbye, and keep humming!" in asked.stdout
+
+
+ROWS_OF = {
+    "quiz": ("", "", "", "Who?", "me", "you", "", "Why?", "so", "no", ""),
+    "talk": ("poem", "", "One", "", "Two", ""),
+    "songs": ("Row", "Row, row", "Sail", "Sail, sail"),
+    "exercises": ("Nod", "Slowly", "", "Wave", "Slowly", ""),
+    "memory": ("apples", "", "", "boats", "", ""),
+}
+
+
+def finish(draft: Draft) -> None:
+    """Answer the open questions with Enter; a row that begins gets words."""
+    while (key := draft.open()) is not None:
+        assert draft.answer(key, "" if draft.default(key) is not None else "words") is None
+
+
+@pytest.mark.parametrize(("first", "second"), list(permutations(KINDS, 2)))
+def test_any_kind_can_be_changed_into_any_other(first: str, second: str, tmp_path: Path) -> None:
+    offered = examples()
+    said = {**offered.said, "talk": ENDS_OF_TEMPLATES, "game": ENDS_OF_TEMPLATES}
+    draft = Draft(tmp_path, offered._replace(said=said))
+    for answer in ("Ours", first, *ROWS_OF.get(first, ())):
+        assert draft.answer(draft.open() or "", answer) is None
+    finish(draft)
+    (keys,) = [keys for label, keys in answers(draft) if label == "kind"]
+    draft.reopen(*keys)
+    for answer in (second, *ROWS_OF.get(second, ())):
+        assert draft.answer(draft.open() or "", answer) is None
+    finish(draft)
+    toml, _ = built(draft)
+    assert tomllib.loads(toml)["title"] == "Ours"
+    assert draft_lines(draft)
+
+
+def ends_of(draft: Draft) -> list[str]:
+    """Return the welcome and goodbye of a draft without an open question."""
+    finish(draft)
+    return [draft.said["welcome"], draft.said["goodbye"]]
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_the_welcome_changes_with_the_title_and_kind_unless_the_author_wrote_it(
+    late: bool, tmp_path: Path
+) -> None:
+    of_game = ("Welcome to {title}!", "That was {title}.")
+    said_by = {"game": of_game, "songs": ("La!", "Oh!")}
+    draft = Draft(tmp_path, examples()._replace(said=said_by))
+    for said in ("Ours", "game", ""):
+        draft.answer(draft.open() or "", said)
+    draft.answer("welcome", "Come in!")
+    assert ends_of(draft) == ["Come in!", "That was Ours."]
+    draft.reopen("title", *(("welcome", "goodbye") if late else ()))
+    draft.answer("title", "Theirs")
+    assert ends_of(draft) == ["Come in!", "That was Theirs."]
+    draft.reopen("kind", *(("goodbye",) if late else ()))
+    draft.answer("kind", "songs")
+    assert ends_of(draft) == ["Come in!", "Oh!"]
+    draft.reopen("title")
+    draft.answer("title", "Theirs")
+    assert draft.open() is None  # nothing has changed
+
+
+def test_a_given_welcome_stays_if_the_title_changes(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, "Ours", "songs")
+    draft.answer("welcome", str(draft.default("welcome")))
+    draft.given.add("welcome")
+    draft.reopen("kind")
+    draft.answer("kind", "memory")
+    assert draft.said["welcome"] == examples().said["songs"][0]
