@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from tangy_profiles.declared.situation_words import value_words
 from tangy_tui.monitoring.player_facts import PlayerFacts
 from tangy_tui.monitoring.replay import GameReplay
-from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.numbers import listed, often
 from tangy_tui.text.situations import Name
 from tangy_tui.text.times import time_of_day
 
@@ -77,7 +77,7 @@ def player_lines(facts: PlayerFacts, name: Name) -> Iterator[str]:
             if (values := _values(facts, person, at))
         ]
         if unclear := facts.unclear.get(person):
-            told.append(f"{UNCLEAR}: {counted(unclear, 'time')}")
+            told.append(f"{UNCLEAR}: {often(unclear)}")
         if told:
             yield f"  {name(person)}: {'; '.join(told)}"
 

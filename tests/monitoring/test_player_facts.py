@@ -116,7 +116,7 @@ def test_page_and_lines_list_answers_scores_and_unclear_answers(quiz: Quiz) -> N
     assert row.index("Rosa") < row.index("it is right (1)") < row.index("it is wrong (2)")
     lines = list(session_lines(session))
     assert "  Rosa: score 1; answer: it is right (1)" in lines
-    assert "  user3: score 0; no clear answer: 1 time" in lines
+    assert "  user3: score 0; no clear answer: once" in lines
     assert session.to_json()["player_facts"][0]["counts"]["score"]["user1"] == 1
 
 
