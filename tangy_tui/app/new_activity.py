@@ -244,12 +244,12 @@ class Draft:
                 self.before[key] = self.said.pop(key)
 
     def _drop_sentences(self, key: str, text: str) -> None:
-        """Drop the sentences that only fit the former title and kind, if this one changes."""
+        """Drop the sentences that only fit the former title and kind, now that this one changes."""
         former = {**self.said, **self.before}
-        if former.get(key, text) == text:
-            return
         for one in SENTENCES:
-            if one not in self.given and former.get(one) == self._usual_sentence(one, former):
+            usual = self._usual_sentence(one, former)
+            fits = usual == self._usual_sentence(one, {**former, key: text})
+            if not fits and one not in self.given and former.get(one) == usual:
                 self.said.pop(one, None)
                 self.before.pop(one, None)
 
