@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +45,23 @@ class ToldDevice:
         return Reading(self.name, self.age, self.state, self.facts)
 
 
+def _newest(value: Stamped[Any]) -> Stamped[Any]:
+    """Return a value as one that has just come; one with a stamp keeps it."""
+    return value if value.stamp else replace(value, stamp=time.monotonic())
+
+
 class ToldBase(ToldDevice):
     """Wheels that stay in place despite commands."""
 
-    odometry = Stamped(Odometry(HERE, Twist()), 0.0, 1)
+    sent = Stamped(Odometry(HERE, Twist()), 0.0, 1)
+
+    @property
+    def odometry(self) -> Stamped[Odometry]:
+        return _newest(self.sent)
+
+    @odometry.setter
+    def odometry(self, value: Stamped[Odometry]) -> None:
+        self.sent = value
 
     async def drive(self, twist: Twist) -> None:
         self.told.append(twist)
@@ -58,7 +73,15 @@ class ToldBase(ToldDevice):
 class ToldLaser(ToldDevice):
     """A scanner without a return within its range."""
 
-    scan = Stamped(Scan(-1.5, 0.1, np.full(31, np.inf), 30.0), 0.0, 1)
+    sent = Stamped(Scan(-1.5, 0.1, np.full(31, np.inf), 30.0), 0.0, 1)
+
+    @property
+    def scan(self) -> Stamped[Scan]:
+        return _newest(self.sent)
+
+    @scan.setter
+    def scan(self, value: Stamped[Scan]) -> None:
+        self.sent = value
 
 
 class ToldArms(ToldDevice):

@@ -261,7 +261,7 @@ async def test_a_robot_with_an_uncertain_pose_turns_to_localise(
         one.base.place(START, 0.9)
         await until(lambda: one.facts("localisation") == {"fit": 0.0, "spread": pytest.approx(0.9)})
         turning = Odometry(START, Twist(0.0, 10.0))
-        monkeypatch.setattr(type(one.parts.base), "odometry", Stamped(turning, 0.0, 1))
+        one.parts.base.odometry = Stamped(turning, 0.0, 1)
         spinning = asyncio.create_task(one.robot.spin())
         await until(lambda: any(isinstance(t, Twist) and t.turn > 0 for t in one.parts.told))
         one.base.place(START, 0.1)

@@ -234,12 +234,13 @@ async def test_localisation_gets_the_odometry_of_the_scan_time() -> None:
             told.append(data[3])
             return tick(*data)
 
-        turns, scan = Twist(0.5, 0.0), parts.laser.scan
+        turns, scan, now = Twist(0.5, 0.0), parts.laser.scan, monotonic() - 0.4
         with patch.object(robot.navigator, "tick", note):
-            parts.base.odometry = Stamped(Odometry(Pose(0.0, 0.0, 0.0), turns), 10.0, 2, 10.0)
+            parts.base.odometry = Stamped(Odometry(Pose(0.0, 0.0, 0.0), turns), now, 2, now)
             robot.tick()
-            parts.laser.scan = replace(scan, stamp=10.4, seq=2, measured=10.1)  # it came late
-            parts.base.odometry = Stamped(Odometry(Pose(0.1, 0.0, 0.0), turns), 10.4, 3, 10.2)
+            late = now + 0.4
+            parts.laser.scan = replace(scan, stamp=late, seq=2, measured=now + 0.1)
+            parts.base.odometry = Stamped(Odometry(Pose(0.1, 0.0, 0.0), turns), late, 3, now + 0.2)
             robot.tick()
         at_scan = told[-1]
         assert at_scan is not None and at_scan.x == pytest.approx(0.05)

@@ -15,6 +15,7 @@ from tangy_hw.device_protocols import (
     StopButton,
     Voice,
 )
+from tangy_hw.robot_process.driver_checks import restart_device
 
 
 @dataclass(frozen=True)
@@ -37,11 +38,14 @@ class Body:
         return (*self.others, *(device for device in own if device is not None))
 
     async def restart(self, device: str) -> None:
-        """Switch a device off and on again."""
+        """Switch a device off and on again.
+
+        Raises:
+            TangyError: its driver fails, or takes too long.
+        """
         for one in self.all:
             if one.name == device:
-                await one.close()
-                await one.start()
+                await restart_device(one)
 
     async def relax(self) -> None:
         """Switch the torque of the arms off."""

@@ -99,7 +99,7 @@ class LiveRobot:
         self._wait_explanations = WaitExplanations(
             wait_explanations or {}, lambda text: self.perform(text=text)
         )
-        self._moved, self._data = OdometryHistory(), CheckedData(body)
+        self._moved, self._data = OdometryHistory(), CheckedData(body, clock.now)
         self._wanted: Pose | None = None
         self._was = ""  # state at the end of the last drive
         self._evidence = DriveMonitor(navigator, clock.now)
