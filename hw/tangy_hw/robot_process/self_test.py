@@ -87,18 +87,19 @@ async def try_robot(
             started.append(one)
             name = next((name for name, device in opened.items() if device is one), "")
             try:
-                async with asyncio.timeout(START_SECONDS):
+                async with asyncio.timeout(START_SECONDS) as limit:
                     await one.start()
-            except TimeoutError:
-                found[name] = SelfTestResult(name, False, hangs(START_SECONDS))
             except Exception as error:
-                if not name:
+                if limit.expired():
+                    found[name] = SelfTestResult(name, False, hangs(START_SECONDS))
+                elif name:
+                    found[name] = _fails(name, error)
+                else:
                     raise
-                found[name] = _fails(name, error)
         tested = {name: one for name, one in opened.items() if name not in found}
         until = time.monotonic() + seconds
         while time.monotonic() < until:
-            if all(map(_works, tested.values())):
+            if all(_works(name, one) for name, one in tested.items()):
                 break
             await asyncio.sleep(TICK_SECONDS)
         for name, one in tested.items():
@@ -151,12 +152,20 @@ async def _try_requests(robot: Robot, seconds: float) -> SelfTestResult:
     return SelfTestResult(REQUESTS, works, text)
 
 
-def _works(device: Device | Camera) -> bool:
+def _works(name: str, device: Device | Camera) -> bool:
     """Return whether a device works; one that fails need not be waited for."""
     try:
-        return device.reading().state == OK and device.reading().age < NEVER
+        reading = device.reading()
+        return reading.state == OK and reading.age < NEVER and not _unsent(name, device)
     except Exception:  # its result names the error
         return True
+
+
+def _unsent(name: str, device: Device | Camera) -> str:
+    """Return what a base or a scanner should have sent, and has not; "" for others."""
+    if name == "laser" and cast(Laser, device).scan is None:
+        return "scan"
+    return "odometry" if name == "base" and cast(Base, device).odometry is None else ""
 
 
 def _fails(name: str, error: Exception) -> SelfTestResult:
@@ -170,6 +179,9 @@ def _tried(
     where = _where(robot, name, device)
     reading = device.reading()
     if reading.state == OK and reading.age < NEVER:
+        if unsent := _unsent(name, device):
+            text = f"{where} says that it works, but it has sent no {unsent}."
+            return SelfTestResult(name, False, text)
         if problem := _data_problem(robot, name, device, reading):
             return SelfTestResult(name, False, f"{where} sends wrong data: {problem}")
         if not (lacks := _missing_facts(robot, name, device, reading)):
@@ -214,9 +226,10 @@ def _measured(robot: Robot, name: str, device: Device | Camera, reading: Reading
         scan = stamped.value
         span = math.degrees(abs(scan.step) * (len(scan.ranges) - 1))
         told = f"{len(scan.ranges)} beams over {span:.0f}°"
-        if not np.isfinite(scan.ranges).any():
+        met = np.where(scan.ranges > 0, scan.ranges, np.inf)
+        if not np.isfinite(met).any():
             return f"{told}, and none of them meets anything"
-        nearest = int(np.argmin(scan.ranges))
+        nearest = int(np.argmin(met))
         bearing = scan.first + scan.step * nearest + laser_of(robot).heading
         side = round(math.degrees(math.atan2(math.sin(bearing), math.cos(bearing))))
         where = f"{abs(side)}° to its {'left' if side > 0 else 'right'}" if side else "ahead"
