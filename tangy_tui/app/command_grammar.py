@@ -113,7 +113,10 @@ _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| sec
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
 _TOLD = re.compile(r"(.{1,60}?)(:| says| answers| answered) (\S.*)", re.I)
 _ANSWER = re.compile(r"(?:answer:|the answer is) (\S.*)", re.I)
-_POLITE = r"(?:please |can you |could you |tangy,? |let tangy |now |you )*"
+_POLITE = (
+    r"(?:please |can you |could you |will you |would you |why don['\u2019]t you |why not "
+    r"|how about you |tangy,? |let tangy |now |you )*"
+)
 _GO_THERE = re.compile(
     rf"{_POLITE}(?:help(?: out)?|assist|visit|look after|see to|attend to|take care of|check on"
     r"|go(?: over| back| first| now| next)? (?:to|and help|and see|and visit|help|see|visit)"

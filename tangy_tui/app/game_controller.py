@@ -200,6 +200,7 @@ class GameController(HandingOver):
                 return game.step()
             finally:
                 self.stepping = False
+                self._keep_no_longer()
                 self.autonomy.done()
                 self.view()
 
@@ -269,6 +270,7 @@ class GameController(HandingOver):
                 self._tell_all()
 
     def _tell_all(self) -> None:
+        self._keep_no_longer()
         self.nudge.set()
         self.changed()
 

@@ -17,7 +17,13 @@ class HandingOver(PausingGames):
     @property
     def asks_next(self) -> bool:
         """Whether staff say in words what Tangy does next, or soon will."""
-        return self.taking_over or self.supervision.question is not None
+        asks = self.taking_over or self.supervision.question is not None
+        return asks and not self.supervision.over
+
+    def _keep_no_longer(self) -> None:
+        """Hand control back if the game is over: no question of it comes any more."""
+        if self.supervision.over:
+            self.taking_over = False
 
     def _take_over(self) -> list[Result]:
         if refused := self.refusal():

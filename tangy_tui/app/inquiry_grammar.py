@@ -43,6 +43,20 @@ _WHY = re.compile(
 """Questions about what Tangy does now or next, and whose turn it is."""
 _WHY_OTHERWISE = re.compile(r"why .*\b(?:you|it|tangy|the robot|nobody|nothing|no one)\b.*")
 """All other questions that begin so, unless they are about something else."""
+_DO = (
+    r"(?:go|visit|help|drive|move|come|see|look|check|call|ask|tell|give|show|say|take|let|make"
+    r"|play|try|start|greet|prais\w+|remind|encourage|sing|read|draw|send|bring|do|have|talk)\b"
+)
+_DOING = (
+    r"(?:go|visit|help|driv|mov|com|see|look|check|call|ask|tell|giv|show|say|tak|lett|mak|play"
+    r"|try|start|greet|prais|remind|encourag|sing|read|draw|send|bring|do|hav|talk)ing\b"
+)
+_PROPOSAL = re.compile(
+    r"(?:and |but |so )?(?:why do not (?:you|we) (?!.*\b(?:any\w*|ever|at all)\b)"
+    rf"|(?:will|would|how about|what about) you\b|why not {_DO}|(?:how|what) about {_DOING})"
+    rf"|.*\bso (?:please )?{_DO}"
+)
+"""What proposes something, and asks nothing: "why don't you go to Rosa"."""
 
 
 def read_inquiry(text: str) -> Inquiry | None:
@@ -52,6 +66,8 @@ def read_inquiry(text: str) -> Inquiry | None:
         return INQUIRIES[words]
     words = words.replace("\u2019", "'").rstrip(" ?.!")
     otherwise = _WHY_OTHERWISE.fullmatch(words) and not _OTHER.search(words)
+    if otherwise and _PROPOSAL.match(_in_full(words)):
+        return None
     return "why" if _WHY.fullmatch(words) or otherwise else None
 
 
@@ -94,8 +110,9 @@ _OTHER = re.compile(
 )
 """Words of questions about something else."""
 _TO = re.compile(
-    r".* (?:to|with|at|help|helps|helping|helped|visit|visits|visiting|visited|see|sees)"
-    r" (?P<to>\S+(?: \S+)?)"
+    r".*\b(?:you|it|tangy|robot|he|she|nobody|no one|anybody|anyone)\b.*"
+    r" (?:(?<!going )to|with|at|help|helps|helping|helped|visit|visits|visiting|visited|see|sees)"
+    r" (?P<to>\S+)"
     r"|(?:why|when) is it (?:not )?(?P<whose>\S+(?: \S+)?)'s? turn|why not (?P<not>\S+)"
 )
 """Questions that name a person, even if nobody is called so."""
@@ -106,10 +123,14 @@ _THINGS = frozenset(
     {
         *("the", "a", "us", "me", "it", "them", "him", "her", "that", "this", "anybody", "anyone"),
         *("everybody", "everyone", "people", "somebody", "someone", "now", "so", "you", "all"),
+        *("nobody", "nothing", "each", "front", "home", "sleep", "bed", "yourself", "itself"),
+        *("something", "anything", "everything", "there", "here", "once", "last", "least"),
     }
 )
 _NOT_NAMES = frozenset(("will", "may", "can", "is", "does", "do", "has", "to", "by", "so"))
 """Words that are names only if no other name is there."""
+_SUBJECTS = frozenset(("you", "it", "tangy", "the", "he", "she", "we", "they", "i"))
+"""After one of these words they are no names: "when will it come"."""
 LONGEST_NAME = 4  # words
 
 
@@ -129,6 +150,8 @@ def read_question(text: str, find_person: Callable[[str], str]) -> AsksAbout | N
     words = " ".join(text.replace("\u2019", "'").split()).strip(" ?.!,")
     plain = _in_full(words.casefold())
     if not _ASKING.fullmatch(plain) or not _ABOUT_TURN.search(plain) or _OTHER.search(plain):
+        return None
+    if _PROPOSAL.match(plain):
         return None
     found = list(_named(plain.split(), find_person))
     people = [person for word, person in found if word not in _NOT_NAMES]
@@ -155,11 +178,18 @@ def _named(words: list[str], find_person: Callable[[str], str]) -> Iterator[tupl
         for last in range(min(first + LONGEST_NAME, len(words)), first, -1):
             name = " ".join(words[first:last]).strip(",;:?")
             person = _person(name, find_person)
-            if person:
+            if person and not _is_verb(words, first, last):
                 yield name, person
                 first = last - 1
                 break
         first += 1
+
+
+def _is_verb(words: list[str], first: int, last: int) -> bool:
+    """Return whether a word that may be a name is none here: "when will it", not "is Will the"."""
+    follows = words[last : last + 1]
+    could_be = words[first:last][0] in _NOT_NAMES and words[first - 1 : first] != ["is"]
+    return could_be and last == first + 1 and not _SUBJECTS.isdisjoint(follows)
 
 
 def _person(name: str, find_person: Callable[[str], str]) -> str:

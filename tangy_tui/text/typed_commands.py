@@ -20,6 +20,14 @@ NEXT = "You say what Tangy does next"
 NEXT_WORDS = "Tangy finishes this first. Type what it does then, and press Enter."
 NEXT_KEYS = "enter says it   esc lets Tangy go on by itself"
 NEXT_EMPTY = "Type what Tangy does next, or press Esc."
+NEXT_OVER = "The game is over, so Tangy does nothing more."
+
+
+def next_dropped(said: str, *, over: bool) -> str:
+    """Tell that Tangy does not do what staff typed ahead."""
+    why = "The game is over" if over else "Tangy went on"
+    return f"{why}, so it does not do this: {said}"
+
 
 NOBODY_KNOWS = "nobody", "I do not know", "Tangy checks the card all the same"
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import COMMAND_WORDS
-from tangy_tui.app.command_grammar import FIXED, MEANINGS, read_answer, read_command
+from tangy_tui.app.command_grammar import FIXED, MEANINGS, read_answer, read_command, read_help
 from tangy_tui.app.game_commands import (
     AUTONOMY,
     DIRECTIONS,
@@ -196,6 +196,17 @@ def test_questions_about_what_tangy_does_ask_why(text: str) -> None:
     assert read(text) is None
     assert read_inquiry(text) == "why"
     assert read_screen(text) == Perform("why")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("why don't you go to Rosa", "why don\u2019t you help Rosa", "will you go to Rosa"),
+        *("why not visit Rosa", "how about you go to Rosa", "would you please help Rosa"),
+    ],
+)
+def test_a_proposal_to_go_to_a_person_asks_for_help_there(text: str) -> None:
+    assert read_help(text, find) == AskFor("user2")
 
 
 @pytest.mark.parametrize("text", ["what should i do", "what is wrong with Rosa", "why did she win"])

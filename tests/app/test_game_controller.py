@@ -41,6 +41,7 @@ from tangy_tui.learning.verification import Asked, Reply, Say, Verified
 from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.replay import read_replays
+from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.log import replay_lines
 from tangy_tui.text.staff_report import staff_rows
 from tests.hw.links import FakeLink
@@ -162,6 +163,29 @@ def test_a_drive_redirected_by_staff_is_no_refusal(live: Played) -> None:
     assert isinstance(yes, Verified)
     told = kinds(control.answer(yes.behaviour, yes.target))
     assert "Acted" in told and "Diagnosed" not in told and not control.supervision.faults
+
+
+@pytest.mark.parametrize("ends", ["by staff", "by its last step"])
+def test_after_a_game_staff_no_longer_say_what_tangy_does(
+    live: Played, monkeypatch: pytest.MonkeyPatch, ends: str
+) -> None:
+    control = live.control
+    live.next()
+    if ends == "by staff":
+        control.apply(TakeOver())
+        assert control.asks_next
+        control.apply(EndGame())
+    else:
+
+        def last_step() -> list[Event]:
+            control.apply(TakeOver())
+            assert control.asks_next
+            return control.supervision.leave()
+
+        monkeypatch.setattr(control.supervision, "step", last_step)
+        control.next()
+    assert control.supervision.over
+    assert not control.taking_over and not control.asks_next
 
 
 def test_staff_take_over_choose_a_behaviour_and_give_back(live: Played) -> None:

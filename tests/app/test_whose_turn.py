@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import timedelta
@@ -9,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from tangy_profiles.activity import known_activities, load_activity
 from tangy_profiles.declared.joint_state import joint_state
+from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.health import ERROR, Reading
@@ -23,9 +26,10 @@ from tangy_tui.app.game_commands import (
     StopRobot,
     TakeOver,
 )
-from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
+from tangy_tui.app.inquiry_grammar import AsksAbout, read_inquiry, read_question
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.staff_view import PersonNow
+from tangy_tui.app.teaching_grammar import read_teaching
 from tangy_tui.app.whose_turn import (
     GameMoment,
     PersonTurn,
@@ -35,6 +39,7 @@ from tangy_tui.app.whose_turn import (
 )
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.language.examples import wordings_of
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text import whose_turn as text
 from tangy_tui.text.control import noted_words
@@ -337,6 +342,74 @@ def test_a_question_may_name_several_people_and_names_that_are_words(robot: Robo
 )
 def test_other_words_are_no_question_about_a_person(robot: Robot, words: str) -> None:
     assert read_question(words, finder(robot)) is None
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("why don't you go to Berta", "why don\u2019t you go to Berta", "why not visit Berta"),
+        *("will you go to Berta", "how about you go to Berta", "how about going to Berta"),
+        *("nobody asks, so go to Berta", "would you please help Berta"),
+    ],
+)
+def test_what_proposes_something_is_no_question(robot: Robot, words: str) -> None:
+    assert read_question(words, finder(robot)) is None
+    assert read_inquiry(words) is None
+
+
+def test_a_proposal_with_any_or_ever_asks() -> None:
+    assert read_inquiry("why don't you do anything?") == "why"
+    assert read_inquiry("why don't you say hello first") is None
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("how about something to laugh about", "why does Tangy help nobody"),
+        *("is the robot going to sleep", "when does it go to front", "why should I go to bed"),
+        *("when does Tangy visit each person", "when are you going to start"),
+    ],
+)
+def test_words_that_are_no_names_are_not_refused_as_such(robot: Robot, words: str) -> None:
+    assert read_question(words, finder(robot)) is None
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["why does Tangy never go to Xaver", "why does nobody help Xaver", "when will it visit Xaver"],
+)
+def test_unknown_names_are_refused(robot: Robot, words: str) -> None:
+    with pytest.raises(TangyError, match="There is nobody called 'Xaver'"):
+        read_question(words, finder(robot))
+
+
+def test_a_verb_before_its_subject_is_no_name(robot: Robot) -> None:
+    robot.workspace.rename(robot.workspace.find_person("user4"), "Will")
+    find = finder(robot)
+    for words in ("when will you come to us", "when will it come", "how long will the robot wait"):
+        assert read_question(words, find) is None
+    assert read_question("is Will the next one", find) == AsksAbout(("user4",))
+
+
+def find_two(wanted: str) -> str:
+    if wanted.casefold() not in ("rosa", "otto"):
+        raise TangyError(f"There is nobody called {wanted!r}.")
+    return wanted.casefold()
+
+
+@pytest.mark.parametrize("activity", known_activities())
+def test_no_words_for_a_step_ask_about_the_game(activity: str) -> None:
+    profile = load_activity(activity)
+    title = profile.title.casefold().split()
+    texts = {t for one in profile.behaviours.values() for t in (*one.phrases, *wordings_of(one))}
+    somebody = re.compile(r"\b(?:the )?(?:user|player|person|team)\b")
+    said = texts | {somebody.sub(name, text) for text in texts for name in ("Rosa", "Otto")}
+    taken = [
+        words
+        for words in said - {"who is next"}  # it asks whose turn it is, in each activity
+        if read_question(words, find_two) or read_inquiry(words) or read_teaching(words, title)
+    ]
+    assert len(said) > 20 and taken == []
 
 
 def finder(robot: Robot) -> Callable[[str], str]:

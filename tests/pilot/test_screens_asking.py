@@ -37,6 +37,7 @@ from tangy_tui.ui.widgets.transcript import Transcript
 from tests.interaction.gaps import learnt, otherwise, without
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot, screen_text
 from tests.pilot.faults import sure
+from tests.support.waiting import until_shown
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 
@@ -157,6 +158,18 @@ async def test_commands_still_work_while_tangy_asks(
         pilot.type(*"drive left 2", "enter")
         while "this game is simulated" not in " ".join(screen_text(pilot.app).split()):
             await pilot.pause(0.02)
+        assert screen.query(AskingPanel), "it still asks"
+
+
+@pytest.mark.slow
+async def test_while_tangy_asks_a_person_called_like_a_verb_can_leave(
+    run: Run, workspace: Workspace, gappy: Policy
+) -> None:
+    workspace.rename(workspace.find_person("user2"), "Will")
+    async with run(app=playing(workspace, gappy)) as pilot:
+        screen = await asked(pilot)
+        pilot.type(*"Will is away", "enter")
+        await until_shown(pilot, lambda: "user2" in screen.control.plan.away)
         assert screen.query(AskingPanel), "it still asks"
 
 

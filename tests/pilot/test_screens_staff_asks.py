@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from textual.widgets import Input, Static
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.command_grammar import command_reader
-from tangy_tui.app.game_commands import AskFor, GoesAway
+from tangy_tui.app.game_commands import AskFor, EndGame, GoesAway
 from tangy_tui.app.interruption import find_interrupted
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.workspace import Workspace
@@ -20,6 +21,7 @@ from tangy_tui.text.control import WAITS_FOR_YOU, waits_words
 from tangy_tui.text.games import REPORT_AFTER_LEAVING, REPORT_AT_HOME
 from tangy_tui.text.interruptions import to_be_resumed_words
 from tangy_tui.text.staff_view import TANGY_WAITS, TIME_FIRST
+from tangy_tui.text.typed_commands import NEXT_OVER, next_dropped
 from tangy_tui.ui import run as opening
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog, NextDialog
@@ -124,6 +126,29 @@ async def test_staff_type_what_tangy_does_next_while_it_finishes_its_step(
             await pilot.press(*"call number", "enter")
             link.most = len(link.said)
             await until_shown(pilot, lambda: "Did you say: call number?" in screen_text(pilot.app))
+        link.most = 1000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("typed", ["", "call number"])
+async def test_the_line_for_what_tangy_does_next_ends_with_the_game(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, typed: str
+) -> None:
+    async with run(app=program) as pilot:
+        await until_shown(pilot, lambda: len(world.called_now) >= 1)
+        while not (world.calling and len(link.said) > link.most):  # until a call is held
+            link.most = len(link.said)
+            await pilot.pause(0.05)
+        screen = live(pilot)
+        await pilot.press("o")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
+        if typed:
+            await pilot.press(*typed, "enter")
+        await asyncio.to_thread(screen.control.apply, EndGame())
+        told = next_dropped(typed, over=True) if typed else NEXT_OVER
+        await until_shown(pilot, lambda: told in screen.query_one(LogView).sentences)
+        assert not any(isinstance(one, NextDialog) for one in pilot.app.screen_stack)
+        assert not screen.control.taking_over
         link.most = 1000
 
 

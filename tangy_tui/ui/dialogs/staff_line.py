@@ -96,9 +96,9 @@ class NextDialog(LineDialog[str]):
         self.answer("")
 
     @property
-    def typed(self) -> bool:
-        """Whether anything has been typed."""
-        return bool(self.query(Input)) and bool(self.query_one(Input).value)
+    def typed(self) -> str:
+        """What has been typed so far."""
+        return self.query_one(Input).value.strip() if self.query(Input) else ""
 
     def taken(self, line: str) -> str:
         """Return the line without spaces around it; raises TangyError if it is empty."""

@@ -37,6 +37,7 @@ from tangy_tui.text.control import (
     waits_words,
 )
 from tangy_tui.text.live_games import MAY_MOVE
+from tangy_tui.text.typed_commands import NEXT_OVER, next_dropped
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.dialogs.staff_line import NextDialog, TellDialog
@@ -146,8 +147,12 @@ class LiveStaff(PlayScreen):
         """Let staff type what Tangy does next, and answer its question with that."""
         dialog, answered = NextDialog(), asyncio.get_running_loop().create_future()
         self.app.push_screen(dialog, answered.set_result)
+        closed = False
         while not answered.done():
-            if self._asks_openly is not None and not dialog.typed:
+            if not self.control.asks_next:  # the game is over, or Tangy goes on
+                closed = True
+                dialog.answer(dialog.typed)
+            elif self._asks_openly is not None and not dialog.typed:
                 dialog.answer("")  # the line of the question takes the keys
             await asyncio.sleep(LOOK_AGAIN_SECONDS)
         said: str | None = answered.result()
@@ -158,6 +163,11 @@ class LiveStaff(PlayScreen):
                 asking.take(said)
                 return
             await asyncio.sleep(LOOK_AGAIN_SECONDS)
+        over = self._supervision.over
+        if said:
+            self._tell_now(next_dropped(said, over=over), "warn")
+        elif closed and over:
+            self._tell_now(NEXT_OVER, "warn")
 
     @property
     def _asks_openly(self) -> AskingPanel | None:

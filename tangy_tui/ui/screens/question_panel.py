@@ -265,16 +265,18 @@ class AskingPanel(Vertical):
         """Handle an answer or a command that was typed here, or before the question was visible."""
         self._by_voice = False
         try:
-            if word := read_question(typed, self._find_person) or read_screen(typed):
-                self.query_one(CommandBar).ready()
-                self._show(word)
-                return
             rules = self._workspace.activity.rules
             command = read_command(typed, self._find_person, self._phrasebook.game, rules)
+            find = self._find_person
+            asks = None if command is not None else read_question(typed, find)  # "Will is away"
+            word = asks or read_screen(typed)
         except TangyError as error:
             self._return(typed, str(error))
             return
-        if command is None or (isinstance(command, Accept) and not self._acceptable):
+        if word is not None:
+            self.query_one(CommandBar).ready()
+            self._show(word)
+        elif command is None or (isinstance(command, Accept) and not self._acceptable):
             if self._held:
                 self._return(typed, text.STOPPED_FIRST)
             else:
