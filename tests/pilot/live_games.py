@@ -39,6 +39,8 @@ class HeldLink(FakeLink):
         """The number of the screen's signs of life."""
         self.most = 10_000
         """It speaks this many lines, then completes nothing more."""
+        self.holds = False
+        """Whether a behaviour has begun and is held."""
         self.held_by: set[str] = set()
         """The owners of stops that are not released."""
         self.released: list[str] = []
@@ -49,6 +51,7 @@ class HeldLink(FakeLink):
 
     def wait(self, asked: Any, seconds: float = 0.0) -> bool:
         free = self.free and len(self.said) <= self.most
+        self.holds = not free
         sleep(0.005)  # else a game would be over before a key is pressed
         return free or any(told.startswith("stop") for told in self.told)
 

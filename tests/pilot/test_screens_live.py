@@ -108,7 +108,7 @@ async def test_a_sign_is_drawn_before_the_step_is_over(
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         link.free = False
         try:
-            await until_shown(pilot, lambda: live(pilot).working > 0)
+            await until_shown(pilot, lambda: link.holds)
             link.sign(3)
             room = live(pilot).query_one(RoomView)
             await until_shown(pilot, lambda: room.scene.requests == ("user3",))
