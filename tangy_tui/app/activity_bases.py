@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from tangy_profiles.activity import known_activities
 from tangy_profiles.defaults import NEW_ACTIVITIES
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.authors_words import listed_answers
 from tangy_tui.app.new_activity import CARDS, QUIZ, Examples
 from tangy_tui.app.question_files import ChoiceQuestion, questions_activity
 
@@ -84,7 +85,7 @@ def choice_questions(rows: Iterable[Mapping[str, str]]) -> list[ChoiceQuestion]:
     """
     found = []
     for number, row in enumerate(rows, 1):
-        options = [one.strip() for one in row["wrong"].split(",") if one.strip()]
+        options = listed_answers(row["wrong"])
         at = number % (len(options) + 1)
         options.insert(at, row["right"])
         found.append(ChoiceQuestion(row["ask"], tuple(options), (at,)))
@@ -138,7 +139,10 @@ def quiz_file(
     edits += [(r"\A#.*", comment), (r"rounds = \d+", f"rounds = {rounds}")]
     if teams:
         edits += [
-            (r"^summary = .*", f'summary = "{words["summary of teams"]}"\nteams = {listed(teams)}'),
+            (
+                r"^summary = .*",
+                f'summary = "{words["summary of teams"]}"\nteams = {toml_list(teams)}',
+            ),
             (re.escape(words["think it over"]), words["talk it over"]),
         ]
     if not points:
@@ -199,7 +203,7 @@ def cards_file(
                 )
                 for one, first in zip(columns, range(1, numbers + 1, each), strict=True)
             ),
-            (r"^patterns = \[[^]]*\]", f"patterns = {listed(shapes)}"),
+            (r"^patterns = \[[^]]*\]", f"patterns = {toml_list(shapes)}"),
             (r'^claim = "[^"]*"', f'claim = "{claim}"'),
             (rf"\b([Ww]e play) {game}\b", rf"\g<1> {_quoted(title)}"),
             (rf'^(speech\.\w+ = "){won.capitalize()}!', rf"\g<1>{claim.capitalize()}!"),
@@ -208,7 +212,7 @@ def cards_file(
     )
 
 
-def listed(values: Sequence[str]) -> str:
+def toml_list(values: Sequence[str]) -> str:
     """Return a list of texts as TOML."""
     return json.dumps(list(values), ensure_ascii=False)
 

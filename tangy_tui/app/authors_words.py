@@ -29,7 +29,7 @@ def has_number(text: str) -> bool:
     return any(c.isdecimal() for c in text) or bool({*NUMBER_WORDS, *TENS}.intersection(words))
 
 
-def listed(text: str) -> list[str]:
+def listed_answers(text: str) -> list[str]:
     """Return the parts of an answer between commas, each once."""
     return list(dict.fromkeys(one for part in text.split(",") if (one := part.strip())))
 

@@ -109,6 +109,8 @@ class GameController(HandingOver):
         self.going = True
         self.single = False
         self.paused_itself = False
+        self._calls_again = threading.Lock()
+        """Held while a repeat of the last number waits for its turn: it is said once."""
         self._turn = threading.RLock()
         """Guards the supervision and the robot."""
         self._watch = StaffWatch()
@@ -132,6 +134,11 @@ class GameController(HandingOver):
         if not self.going:
             return "paused"
         return "asking" if self._unanswered else "running"
+
+    @property
+    def repeats_call(self) -> bool:
+        """Whether the last number is said once more, or will be as soon as Tangy can."""
+        return self._calls_again.locked()
 
     @property
     def waits(self) -> bool:
@@ -257,6 +264,8 @@ class GameController(HandingOver):
     def carry_out(self, command: GameCommand) -> list[Result]:
         """Carry out a command of staff; raises TangyError if that fails or cannot be logged."""
         with serving():
+            if isinstance(command, CallAgain) and not self._calls_again.acquire(blocking=False):
+                return [StaffNote("calls again soon")]
             try:
                 if isinstance(command, AT_ONCE):
                     return self._dispatch(command)
@@ -266,6 +275,8 @@ class GameController(HandingOver):
                 with self._turn:
                     return self._dispatch(command)
             finally:
+                if isinstance(command, CallAgain):
+                    self._calls_again.release()
                 self.plan.forget_early(command)
                 self._tell_all()
 

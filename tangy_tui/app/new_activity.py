@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tangy_profiles.game_rules import COMMAND_WORDS
-from tangy_tui.app.authors_words import has_number, is_file, kept, listed, name_of
+from tangy_tui.app.authors_words import has_number, is_file, kept, listed_answers, name_of
 from tangy_tui.language.answers import yes_or_no
 
 QUIZ, TALK, SONGS, EXERCISES = "quiz", "talk", "songs", "exercises"
@@ -199,7 +199,7 @@ class Draft:
 
     def teams(self) -> int:
         """Return how many teams take turns, 0 if people do."""
-        return len(listed(self.said.get(TEAMS, ""))) if self.kind == QUIZ else 0
+        return len(listed_answers(self.said.get(TEAMS, ""))) if self.kind == QUIZ else 0
 
     def answer(self, key: str, text: str) -> Problem | None:
         """Take an answer; return why it cannot be taken."""
@@ -329,7 +329,7 @@ class Draft:
             return Problem("word")
         if base == CLAIM and text in COMMAND_WORDS:
             return Problem("command", (text,))
-        if base == TEAMS and text and not 2 <= len(listed(text)) <= MOST_TEAMS:
+        if base == TEAMS and text and not 2 <= len(listed_answers(text)) <= MOST_TEAMS:
             return Problem("teams", ("2", str(MOST_TEAMS)))
         if base == WRONG:
             return self._wrong_problem(text, self.said.get(row_key(RIGHT, number), ""))
@@ -354,7 +354,7 @@ class Draft:
         return base not in of_some or base in BEFORE.get(self.kind, ())
 
     def _wrong_problem(self, text: str, right: str) -> Problem | None:
-        wrong = listed(text)
+        wrong = listed_answers(text)
         if not 1 <= len(wrong) <= MOST_WRONG:
             return Problem("wrong answers", ("1", str(MOST_WRONG)))
         all_of_them = [one.casefold() for one in (right, *wrong)]

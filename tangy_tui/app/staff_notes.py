@@ -41,6 +41,7 @@ DoneKind = Literal[
 """What became of a command that was carried out."""
 
 RefusalKind = Literal[
+    "calls again soon",
     "here before",
     "away before",
     "is away",

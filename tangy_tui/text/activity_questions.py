@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 
 from tangy_tui.app import new_activity as new
-from tangy_tui.app.authors_words import listed
+from tangy_tui.app.authors_words import listed_answers
 from tangy_tui.app.new_activity import Draft, Problem, row_key, split_key
 from tangy_tui.text.numbers import counted
 
@@ -208,7 +208,7 @@ def _told(draft: Draft, keys: Sequence[str]) -> str:
         sample = draft.examples.rows.get(draft.kind, 2)
         return EXAMPLES.format(sample) if number == 1 else NOTHING
     if base == new.TEAMS:
-        return " · ".join(listed(said)) or EACH_IN_TURN
+        return " · ".join(listed_answers(said)) or EACH_IN_TURN
     if base in new.YES_OR_NO:
         return _said(base, said) or NOTHING
     parts = [(split_key(key)[0], draft.said.get(key, "")) for key in keys]

@@ -127,6 +127,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"Tangy {autonomy_words(level)}."
         case "call again":
             return f"Tangy calls {about} again."
+        case "calls again soon":
+            return waits_words(CallAgain(), name)
         case "call taken back":
             return f"{about} counts as not called."
         case "pace":

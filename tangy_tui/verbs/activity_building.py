@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from tangy_tui.app import activity_bases as bases
 from tangy_tui.app import new_activity as new
-from tangy_tui.app.authors_words import listed
+from tangy_tui.app.authors_words import listed_answers
 from tangy_tui.app.new_activity import Draft
 from tangy_tui.app.question_files import ChoiceQuestion, questions_table
 from tangy_tui.text import activity_questions as words
@@ -67,7 +67,7 @@ def _built(draft: Draft, imported: Sequence[ChoiceQuestion]) -> tuple[str, str]:
 def _quiz(draft: Draft, comment: str, imported: Sequence[ChoiceQuestion]) -> tuple[str, str]:
     rows = draft.rows()
     questions = list(imported) or bases.choice_questions(rows)
-    teams = listed(draft.said.get(new.TEAMS, ""))
+    teams = listed_answers(draft.said.get(new.TEAMS, ""))
     media = [one for one in (new.PICTURE, new.SOUND) if any(row.get(one) for row in rows)]
     toml = bases.quiz_file(
         comment,

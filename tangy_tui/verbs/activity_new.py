@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 SHOWN, SHOWN_LAST = 8, 3
 """The first and the last steps of a game that the preview shows."""
-FIRST_ROW = 1
 
 
 def activity_new(
@@ -130,7 +129,7 @@ def _give_rows(draft: Draft, rows: list[str]) -> None:
         _give(draft, {MEDIA: "y"})
     if not draft.fields:
         raise TangyError(plain(f"--row: {problem_words(Problem('no rows'))}"))
-    for number, row in enumerate(rows, FIRST_ROW):
+    for number, row in enumerate(rows, 1):
         parts = [one.strip() for one in row.split(";")]
         if not parts[0] or len(parts) > len(draft.fields):
             raise TangyError(

@@ -1,27 +1,46 @@
-"""The key that has the last number called again, while Tangy is with somebody."""
+"""The last number is said once more, however often staff ask for it meanwhile."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
+import threading
+from pathlib import Path
 
-from tangy_tui.app.game_commands import CallAgain, GameCommand
-from tangy_tui.text.control import waits_words
-from tangy_tui.ui.screens.live_staff import LiveStaff
+from tangy_tui.app.game_commands import CallAgain
+from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.control import noted_words, waits_words
+from tests.app.test_interruption import Robot
+from tests.support.waiting import wait_until
 
 
-def test_it_waits_once_until_tangy_can() -> None:
-    done, told = list[GameCommand](), list[str]()
-    screen: Any = SimpleNamespace(
-        working=1,
-        _calls_again=False,
-        _refused=lambda: False,
-        _do=done.append,
-        _tell_now=lambda sentence, kind: told.append(sentence),
-        _workspace=SimpleNamespace(name=str),
-    )
-    for _ in range(2):
-        LiveStaff.action_call_again(screen)
-    assert done == [CallAgain()]
-    words = "One moment: Tangy finishes this, then calls the last number again."
-    assert told == [words] == [waits_words(CallAgain(), str)]
+def test_a_repeat_that_waits_for_its_turn_is_not_said_twice(taught: Path) -> None:
+    workspace = Workspace(taught)
+    robot = Robot(workspace)
+    robot.next(3)
+    control, ends = robot.control, threading.Event()
+    begun = threading.Event()
+
+    def hold(do: str, time: float) -> None:
+        begun.set()
+        ends.wait(20.0)
+
+    said = len(robot.link.said)
+    robot.link.meanwhile = hold
+    step = threading.Thread(target=robot.next, args=(1,))
+    step.start()
+    assert begun.wait(20.0)
+    first = threading.Thread(target=control.apply, args=(CallAgain(),))
+    first.start()
+    wait_until(lambda: control.repeats_call, "the first one waits")
+    (note,) = control.apply(CallAgain())
+    assert isinstance(note, StaffNote) and note.kind == "calls again soon"
+    assert noted_words(note, str) == waits_words(CallAgain(), str)
+    robot.link.meanwhile = lambda do, time: None
+    ends.set()
+    for thread in (step, first):
+        thread.join(20.0)
+    (label,) = {robot.link.said[-1]}
+    assert robot.link.said[said + 1 :].count(label) == 1
+    (note,) = control.apply(CallAgain())
+    assert isinstance(note, StaffNote) and note.kind == "call again"
+    workspace.close()

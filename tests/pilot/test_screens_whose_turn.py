@@ -17,7 +17,7 @@ from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
 from tests.interaction.gaps import learnt, without
 from tests.pilot.conftest import LARGE, SMALL, TangyPilot, screen_text
-from tests.pilot.live_games import HeldLink, live, live_program, paused_after
+from tests.pilot.live_games import HeldLink, live, paused_after
 from tests.pilot.test_screens_asking import FEW, Cover, asked, gap, playing
 from tests.support.live_worlds import live_world
 from tests.support.waiting import until_shown
@@ -34,18 +34,8 @@ def gappy(workspace: Workspace, cover: Cover) -> Policy:
 
 
 @pytest.fixture
-def link() -> HeldLink:
-    return HeldLink()
-
-
-@pytest.fixture
 def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
     return live_world(workspace, link)
-
-
-@pytest.fixture
-def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
-    return live_program(workspace, world, policy)
 
 
 def shown(pilot: TangyPilot) -> str:

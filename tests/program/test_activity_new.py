@@ -12,7 +12,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tangy_tui.app.activity_bases import examples
+from tangy_tui.app.activity_bases import choice_questions, examples
 from tangy_tui.app.authors_words import name_of
 from tangy_tui.app.new_activity import KINDS, Draft, Problem
 from tangy_tui.text.activity_questions import (
@@ -372,3 +372,9 @@ def test_a_given_welcome_stays_if_the_title_changes(tmp_path: Path) -> None:
     draft.reopen("kind")
     draft.answer("kind", "memory")
     assert draft.said["welcome"] == examples().said["songs"][0]
+
+
+def test_a_wrong_answer_that_was_typed_twice_is_offered_once() -> None:
+    row = {"ask": "What is red?", "right": "rose", "wrong": "sky, sky, sea;, sea;"}
+    (question,) = choice_questions([row])
+    assert sorted(question.options) == ["rose", "sea;", "sky"]

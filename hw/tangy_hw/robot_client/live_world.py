@@ -379,6 +379,6 @@ class LiveWorld(LivePlan):
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, a user or an expert handle a fault; return the duration in s.
 
-        The time for which a halted robot stood still before passed on the robot's clock.
+        Not included: the time for which it stood still before. The clock of the game has that.
         """
         return self._remedies.do(remedy)

@@ -20,14 +20,19 @@ from tangy_hw.navigation.limits import laser_of
 from tangy_hw.perception.camera_hub import Sources
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
-from tangy_hw.robot_process.driver_checks import fails, hangs, odometry_problem, scan_problem
+from tangy_hw.robot_process.driver_checks import (
+    START_SECONDS,
+    fails,
+    hangs,
+    odometry_problem,
+    scan_problem,
+)
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, NEVER, OK, WARN, Reading
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import load_room
 
-START_SECONDS = 10.0
 CLOSE_SECONDS = 5.0
 SECONDS = 5.0  # for a working device to send data: cameras take longest
 TICK_SECONDS = 0.05

@@ -59,8 +59,6 @@ class LiveStaff(PlayScreen):
     world: LiveWorld
     working = 0
     """The number of running and queued commands."""
-    _calls_again = False
-    """Whether the last number is to be said once more as soon as Tangy can."""
     _cards: LiveCards
 
     @property
@@ -86,16 +84,11 @@ class LiveStaff(PlayScreen):
 
     async def _do_beside(self, command: GameCommand) -> None:
         done = asyncio.create_task(self._beside(lambda: self.control.apply(command)))
-        if isinstance(command, CallAgain):
-            done.add_done_callback(self._called_again)
         if not (await asyncio.wait({done}, timeout=ANSWERS_SECONDS))[0]:
             self._tell_now(waits_words(command, self._workspace.name), "dim")
             self.picture.show_scene(0, drive=False, pace=0)
             self.show_staff()
         self._take(await done)
-
-    def _called_again(self, done: asyncio.Task[list[Result]]) -> None:
-        self._calls_again = False
 
     def action_pause(self) -> None:
         """Pause, or continue; after a STOP, let the robot move again."""
@@ -194,10 +187,7 @@ class LiveStaff(PlayScreen):
 
     def action_call_again(self) -> None:
         """Say the last number once more, after the current behaviour."""
-        if self._calls_again:
-            self._tell_now(waits_words(CallAgain(), self._workspace.name), "dim")
-        elif not self._refused():
-            self._calls_again = True
+        if not self._refused():
             self._do(CallAgain())
 
     def action_void_call(self) -> None:
