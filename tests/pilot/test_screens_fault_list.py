@@ -13,6 +13,7 @@ from tangy_tui.text.games import NO_UNSEEN_FAULT
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog
+from tangy_tui.ui.round_trip import ReplyParser
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
 from tangy_tui.ui.widgets.fault_list import SHORTEST_LAST, FaultList, columns_for
 from tangy_tui.ui.widgets.log_view import LogView
@@ -246,6 +247,22 @@ async def test_every_kind_of_fault_can_be_injected(run: Run) -> None:
         assert [kind.name for kind in dialog.kinds] == list(KINDS)
         pilot.type(*"covered")  # the console's name of the fault, not the kind's name
         await until_shown(pilot, lambda: [k.name for k in dialog.kinds] == ["camera-occluded"])
+
+
+async def test_letters_that_arrive_together_filter_the_kinds_and_their_digits_choose_none(
+    run: Run,
+) -> None:
+    dialog = InjectDialog((), (), dict.fromkeys(KINDS, ""))
+    async with run(size=SMALL) as pilot:
+        pilot.app.push_screen(dialog)
+        await pilot.pause()
+        for message in ReplyParser().feed("camera 2"):
+            pilot.app.post_message(message)
+        await until_shown(pilot, lambda: "camera 2_" in pilot.text())
+        assert pilot.app.screen is dialog and not dialog.kinds
+        await pilot.press("backspace")
+        await until_shown(pilot, lambda: {k.name for k in dialog.kinds} >= {"camera-occluded"})
+        assert "emergency-stop" not in {k.name for k in dialog.kinds}
 
 
 @pytest.mark.slow

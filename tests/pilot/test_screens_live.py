@@ -402,6 +402,7 @@ async def test_esc_returns_the_choice_to_tangy(run: Run, program: Program) -> No
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
         await until_shown(pilot, lambda: any(one.is_open for one in live(pilot).query(AskingPanel)))
+        await until_shown(pilot, lambda: live(pilot).is_current)  # not the line typed ahead
         await pilot.press("escape")  # out of the line
         await until_shown(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
         steps = live(pilot).control.supervision.steps

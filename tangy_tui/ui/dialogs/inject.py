@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import ClassVar
 
 from rich.cells import cell_len
@@ -16,11 +16,38 @@ from tangy_sim.worlds.injection import AT_ONCE, KINDS, FaultKind
 from tangy_tui.text.injections import NONE_FOUND, WHICH
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.pasted_text import pasted_text
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import fit, shorten
 
 THERE, TO_COME = "there: enter lifts it", "to come: enter lifts it"
-LONGEST = 30
+
+
+class KindList(ChoiceList):
+    """The list of kinds: letters filter, also if many arrive together; digits choose."""
+
+    LETTERS_FILTER = True
+
+    def __init__(self, help: str, changed: Callable[[], None]) -> None:
+        """Make an empty list.
+
+        Args:
+            help: what its help says.
+            changed: called when the filter has changed; shows what matches.
+        """
+        super().__init__("", help)
+        self._changed = changed
+
+    def _is_filter_key(self, event: events.Key) -> bool:
+        if event.is_printable and event.character in set("123456789-'"):
+            return event.character in "-'" or bool(pasted_text(event))
+        return super()._is_filter_key(event)
+
+    def _kept(self, lines: Sequence[ChoiceLine]) -> Sequence[ChoiceLine]:
+        return lines  # the dialog filters: it knows more names of a kind than the line shows
+
+    def _refilter(self) -> None:
+        self._changed()
 
 
 class InjectDialog(Dialog[str | None]):
@@ -28,8 +55,8 @@ class InjectDialog(Dialog[str | None]):
 
     DEFAULT_CSS = """
     InjectDialog > .box { width: 78; padding: 0 1; }
-    InjectDialog ChoiceList { height: auto; max-height: 18; min-height: 1; }
-    InjectDialog.-low ChoiceList { max-height: 12; }
+    InjectDialog KindList { height: auto; max-height: 18; min-height: 1; }
+    InjectDialog.-low KindList { max-height: 12; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("enter", "nothing", "Bring it about, or lift it"),
@@ -59,32 +86,31 @@ class InjectDialog(Dialog[str | None]):
         self._found_by = {
             kind.name: f"{kind.name} {kind.words} {called[kind.name]}".lower() for kind in self._all
         }
-        self._typed = ""
         self.kinds: tuple[FaultKind, ...] = ()
 
     def compose(self) -> ComposeResult:
         """Lay out the kinds."""
-        box = Vertical(ChoiceList("", self.HELP), id="inject", classes="box")
+        box = Vertical(KindList(self.HELP, self._show), id="inject", classes="box")
         box.border_title = WHICH
         yield box
 
     def on_mount(self) -> None:
         """Show all kinds."""
-        self.query_one(ChoiceList).focus()
+        self.query_one(KindList).focus()
         self._show()
 
     def _show(self) -> None:
-        words = self._typed.lower().split()
+        shown = self.query_one(KindList)
+        words = shown.filter.lower().split()
         order = sorted(self._all, key=lambda kind: not self._lifts(kind))
         self.kinds = tuple(
             kind for kind in order if all(w in self._found_by[kind.name] for w in words)
         )
-        kinds = self.query_one(ChoiceList)
-        kinds.styles.height = max(1, len(self.kinds))
-        kinds.show(lambda width, height: self._lines(width))
+        shown.styles.height = max(1, len(self.kinds))
+        shown.show(lambda width, height: self._lines(width))
         keys = "type to search   1-9 or enter takes   esc goes back"
-        searched = Content(f"{clean(self._typed)}_   enter takes   esc shows all")
-        self.query_one("#inject").border_subtitle = searched if self._typed else keys
+        searched = Content(f"{clean(shown.filter)}_   enter takes   esc shows all")
+        self.query_one("#inject").border_subtitle = searched if shown.filter else keys
 
     def _lines(self, width: int) -> list[ChoiceLine]:
         if not self.kinds:
@@ -112,28 +138,17 @@ class InjectDialog(Dialog[str | None]):
         return kind.name in self._there or kind.name in self._to_come
 
     def on_key(self, event: events.Key) -> None:
-        """Choose with Enter or a number; letters filter."""
-        if event.key in ("up", "down", "pageup", "pagedown", "home", "end"):
+        """Choose with Enter or a number; letters have gone to the list."""
+        if event.key in ("up", "down", "pageup", "pagedown", "home", "end", "question_mark"):
             return
-        if event.key != "question_mark":
-            event.stop()
-            event.prevent_default()
+        event.stop()
+        event.prevent_default()
         if event.key == "enter" and self.kinds:
-            self.answer(str(self.query_one(ChoiceList).chosen))
+            self.answer(str(self.query_one(KindList).chosen))
         elif event.key == "escape":
-            if not self._typed:
-                self.answer(None)
-            self._typed = ""
-        elif event.key == "backspace":
-            self._typed = self._typed[:-1]
+            self.answer(None)
         elif event.key in "123456789" and int(event.key) <= len(self.kinds):
             self.answer(self.kinds[int(event.key) - 1].name)
-        elif event.character and (event.character.isalpha() or event.character in " -'"):
-            self._typed = (self._typed + event.character)[:LONGEST]
-        else:
-            return
-        if self.is_attached:
-            self._show()
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` handles the keys, to check each of them."""
