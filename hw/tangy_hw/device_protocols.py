@@ -59,7 +59,8 @@ class Odometry(NamedTuple):
 class Scan:
     """One turn of a laser scanner: beam i has the bearing `first` + i * `step`.
 
-    `ranges` (n,) are in m; inf for a beam without a return, or without a valid range.
+    `ranges` (n,) are in m; inf for a beam without a return, or without a valid range. A beam that
+    ends at `farthest` or beyond it met nothing so far.
     """
 
     first: float

@@ -17,13 +17,15 @@ LARGEST = 2.0  # metres from its centre to its edge
 FASTEST_TURN = 6.0  # rad/s
 HARDEST = 5.0  # m/s^2
 HIGHEST = 3.0  # metres above the floor
+SHORTEST = 1.0  # metres that a scanner must see
 
 
 @dataclass(frozen=True)
 class Mount:
     """The mounting of a device: x, y and height in m; yaw in degrees, to the left.
 
-    `reach` is its range in m; 0: the range that the device reports.
+    `reach` is its range in m, beyond which a scanner is not believed; 0: the range that the device
+    reports.
     """
 
     x: float = 0.0
@@ -76,13 +78,20 @@ def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
         entry.number("turn", 0.1, FASTEST_TURN, usual.turn, unit="rad/s"),
         entry.number("acceleration", 0.05, HARDEST, usual.acceleration, unit="m/s²"),
         entry.number("braking", 0.2, HARDEST, usual.braking, unit="m/s²"),
-        _mount(entry.table("laser", optional=True)),
+        _laser(entry.table("laser", optional=True)),
         MappingProxyType({name: _mount(seen.table(name)) for name in seen if name in known}),
         entry.number("arms", 0.0, LARGEST, usual.arms, unit="m"),
     )
     seen.close(also=known)
     entry.close(also=() if corners else ("radius", "corners"))
     return body
+
+
+def _laser(entry: Table) -> Mount:
+    mount = _mount(entry)
+    if 0 < mount.reach < SHORTEST:
+        raise entry.wrong("range", f"must be at least {SHORTEST:g} m, or left out.")
+    return mount
 
 
 def _mount(entry: Table) -> Mount:

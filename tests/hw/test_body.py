@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from math import hypot, pi, radians
+from math import hypot, inf, pi, radians
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tangy_hw.device_protocols import STILL, Odometry, Pose, Twist
-from tangy_hw.navigation.limits import MotionLimits, laser_of
+from tangy_hw.navigation.limits import MotionLimits, laser_of, reach_of
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people, outside
 from tangy_hw.navigation.people_tracker import Track
@@ -44,6 +44,7 @@ class TestFile:
         assert load_robot().body == BodyProfile()
         assert MotionLimits.of(load_robot()) == MotionLimits(max_speed=load_robot().speed)
         assert laser_of(load_robot()) == Pose(0.0, 0.0, 0.0)
+        assert reach_of(load_robot()) == inf
 
     def test_a_body_is_read(self, tmp_path: Path) -> None:
         robot = described(tmp_path, WIDE)
@@ -65,6 +66,7 @@ class TestFile:
             ('braking = "hard"', "body.braking"),
             ("laser = { x = 0, z = 1 }", "body.laser.z"),
             ("laser = { yaw = 400 }", "body.laser.yaw"),
+            ("laser = { range = 0.3 }", "body.laser.range = 0.3"),
             ("cameras.eye = { x = 0 }", "body.cameras.eye"),
         ],
     )

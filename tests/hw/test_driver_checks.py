@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tangy_hw.device_protocols import DeviceError, Odometry, Pose, Stamped, Twist
+from tangy_hw.device_protocols import DeviceError, Odometry, Pose, Scan, Stamped, Twist
+from tangy_hw.navigation.poses import endpoints
 from tangy_hw.robot_process.driver_checks import (
     CheckedData,
     restart_device,
@@ -24,13 +25,13 @@ from tests.hw.live_bodies import ToldBody, ToldDevice
 class Checked:
     """The checked data of a body, at a time that the test sets."""
 
-    def __init__(self) -> None:
+    def __init__(self, reach: float = math.inf) -> None:
         self.now = 1.0
         self.parts = ToldBody()
         self.laser, self.base = self.parts.laser, self.parts.base
         self.laser.scan = replace(self.laser.sent, stamp=1.0)
         self.base.odometry = at(2.0, 1.0, 0.0, 1.0)
-        self.data = CheckedData(self.parts.body(), lambda: self.now)
+        self.data = CheckedData(self.parts.body(), lambda: self.now, reach)
 
     def states(self) -> tuple[str, str]:
         return self.data.report(self.laser).state, self.data.report(self.base).state
@@ -211,3 +212,22 @@ async def test_a_driver_that_cannot_start_is_named() -> None:
 
 def test_a_reading_that_raises_is_an_error_of_the_device() -> None:
     assert safe_reading(Bad()).state == ERROR
+
+
+@pytest.mark.parametrize(("reach", "farthest"), [(3.0, 3.0), (math.inf, 12.0), (40.0, 12.0)])
+def test_returns_beyond_the_range_of_the_scanner_meet_nothing(
+    reach: float, farthest: float
+) -> None:
+    one = Checked(reach)
+    ranges = np.array([0.5, 2.9, 3.1, 8.0, 13.0, math.inf, *[1.0] * 10])
+    one.laser.scan = Stamped(Scan(0.0, 0.1, ranges, 12.0), 1.0, 7, 0.9)
+    scan = one.data.scan
+    assert scan is not None and (scan.stamp, scan.seq, scan.measured) == (1.0, 7, 0.9)
+    assert scan.value.farthest == farthest
+    assert (
+        scan.value.ranges.tolist()
+        == np.where(np.isfinite(ranges), np.minimum(ranges, farthest), ranges).tolist()
+    )
+    assert len(endpoints(scan.value)) == int((ranges < farthest).sum())
+    assert one.data.scan is scan  # not computed again
+    assert one.data.report(one.laser).state == OK

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 from typing import Any
-from unittest.mock import patch
+from unittest.mock import Mock, patch
 
 import numpy as np
 import pytest
@@ -20,6 +20,7 @@ from tangy_hw.device_protocols import (
     MachineClock,
     Odometry,
     Pose,
+    Scan,
     Stamped,
     Twist,
 )
@@ -61,6 +62,21 @@ async def test_a_sound_is_played_after_the_speech() -> None:
         parts.voice.hushed.set()  # it has spoken
         assert (await soon(doing)) == {"said": True, "played": True}
         assert parts.told.index("play bell.wav") > parts.told.index("say")
+
+
+async def test_navigation_sees_as_far_as_the_robots_file_says(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    robot, parts = load_robot(), ToldBody()
+    body = replace(robot.body, laser=replace(robot.body.laser, reach=3.0))
+    parts.laser.scan = Stamped(Scan(-1.5, 0.1, np.full(31, 5.0), 30.0), 0.0, 2)
+    navigator = Navigator(MAP, np.random.default_rng(1), HERE)
+    live = LiveRobot(replace(robot, body=body), parts.body(), navigator, MachineClock())
+    ticked = Mock(wraps=navigator.tick)
+    monkeypatch.setattr(navigator, "tick", ticked)
+    live.tick()
+    scan: Scan = ticked.call_args.args[1]
+    assert scan.farthest == 3.0 and (scan.ranges == 3.0).all()
 
 
 class TestStop:

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from tangy_hw.device_protocols import STILL, Pose
+from tangy_hw.device_protocols import STILL, Pose, Scan
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.obstacles import Obstacles
@@ -127,6 +127,21 @@ class TestObstacles:
         robot.boxes.clear()
         robot.run(3)
         assert len(robot.navigator.obstacles) == 0
+
+    def test_beams_that_end_at_the_range_clear_obstacles_and_are_none(self) -> None:
+        obstacles, here = Obstacles(MAP), Pose(5.0, 1.2, pi / 2)
+        near, gone = (
+            Scan(-wide, 0.01, np.full(round(200 * wide), far), 3.0)
+            for wide, far in ((0.5, 1.2), (0.6, 3.0))
+        )
+        assert obstacles.unmapped(here, near).all()
+        for _ in range(10):
+            obstacles.see(here, near, 0.1)
+        assert len(obstacles.points)
+        assert not obstacles.unmapped(here, gone).any()
+        for _ in range(30):
+            obstacles.see(here, gone, 0.1)
+        assert not len(obstacles.points)
 
     def test_mapped_points_are_separated_from_unmapped_ones(self) -> None:
         obstacles = Obstacles(MAP)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite, radians
+from math import inf, isfinite, radians
 
 from tangy_hw.device_protocols import STILL, Pose, Twist
 from tangy_profiles.robot import Robot
@@ -93,3 +93,8 @@ def laser_of(robot: Robot) -> Pose:
     """Return the pose of a robot's scanner on it: x and y in m, heading in rad."""
     laser = robot.body.laser
     return Pose(laser.x, laser.y, radians(laser.yaw))
+
+
+def reach_of(robot: Robot) -> float:
+    """Return the range in m beyond which a robot's scanner is not believed; inf: its own."""
+    return robot.body.laser.reach or inf

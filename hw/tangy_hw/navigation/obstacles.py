@@ -62,7 +62,7 @@ class Obstacles:
 
     def unmapped(self, pose: Pose, scan: Scan) -> NDArray[np.bool_]:
         """Return for each beam (n,) whether its return is off everything on the map."""
-        met = np.isfinite(scan.ranges)
+        met = scan.ranges < scan.farthest
         ranges, angles = np.where(met, scan.ranges, 0.0), bearings(scan)
         ends = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
         ends = transform_points(ends, compose(pose, self._laser))

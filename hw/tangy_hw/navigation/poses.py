@@ -5,6 +5,7 @@ Poses are `Pose` values or rows of arrays (n, 3): x and y in m, heading in rad.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, pi, sin
 from typing import TypeAlias, TypeVar
 
@@ -56,6 +57,18 @@ def lengths(steps: Floats) -> Floats:
 def bearings(scan: Scan) -> Floats:
     """Return the bearing of each beam (n,) in rad, relative to straight ahead."""
     return scan.first + scan.step * np.arange(len(scan.ranges), dtype=np.float64)
+
+
+def up_to(scan: Scan, reach: float) -> Scan:
+    """Return a scan without returns beyond `reach` m, or beyond its own `farthest`.
+
+    Such a beam ends at the range: it is free so far, and meets nothing.
+    """
+    farthest = min(scan.farthest, reach)
+    beyond = np.isfinite(scan.ranges) & (scan.ranges > farthest)
+    if farthest == scan.farthest and not beyond.any():
+        return scan
+    return replace(scan, ranges=np.where(beyond, farthest, scan.ranges), farthest=farthest)
 
 
 def endpoints(

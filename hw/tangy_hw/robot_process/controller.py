@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 
 from tangy_hw.device_protocols import STILL, Clock, Pose, Twist
-from tangy_hw.navigation.limits import MotionLimits, laser_of
+from tangy_hw.navigation.limits import MotionLimits, laser_of, reach_of
 from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.navigation.odometry_history import OdometryHistory
 from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
@@ -99,7 +99,7 @@ class LiveRobot:
         self._wait_explanations = WaitExplanations(
             wait_explanations or {}, lambda text: self.perform(text=text)
         )
-        self._moved, self._data = OdometryHistory(), CheckedData(body, clock.now)
+        self._moved, self._data = OdometryHistory(), CheckedData(body, clock.now, reach_of(robot))
         self._wanted: Pose | None = None
         self._was = ""  # state at the end of the last drive
         self._evidence = DriveMonitor(navigator, clock.now)

@@ -10,6 +10,7 @@ import asyncio
 import logging
 import math
 from collections.abc import Callable, Coroutine
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from tangy_hw.device_protocols import (
     Stamped,
     Twist,
 )
-from tangy_hw.navigation.poses import compose, relative_pose
+from tangy_hw.navigation.poses import compose, relative_pose, up_to
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, NEVER, STALE, Reading
 from tangy_profiles.reading import plain
@@ -174,20 +175,29 @@ class CheckedData:
     If a base is switched on again, its odometry begins anew. The pose goes on from the last one.
     """
 
-    def __init__(self, body: Body, clock: Callable[[], float]) -> None:
-        """Check the data of a robot's devices; `clock` returns the robot's time in s."""
-        self._body, self._clock = body, clock
+    def __init__(self, body: Body, clock: Callable[[], float], reach: float = math.inf) -> None:
+        """Check the data of a robot's devices.
+
+        Args:
+            body: the devices.
+            clock: returns the robot's time in s.
+            reach: range in m beyond which the scanner is not believed.
+        """
+        self._body, self._clock, self._reach = body, clock, reach
         self._known: dict[str, tuple[Any, str]] = {}
-        self._good: Stamped[Scan] | None = None
+        self._sent: Stamped[Scan] | None = None  # the newest scan that makes sense, as it came
+        self._good: Stamped[Scan] | None = None  # up to the scanner's range
         self._raw: Stamped[Odometry] | None = None
         self._begins: tuple[Pose, Pose] | None = None  # the same pose, by the base and by us
 
     @property
     def scan(self) -> Stamped[Scan] | None:
-        """The newest scan that makes sense; None before the first."""
+        """The newest scan that makes sense, up to the scanner's range; None before the first."""
         value = self._checked("laser")
-        if value is not None:
-            self._good = value
+        if value is not None and value is not self._sent:
+            near = up_to(value.value, self._reach)
+            self._sent = value
+            self._good = value if near is value.value else replace(value, value=near)
         return self._good
 
     @property

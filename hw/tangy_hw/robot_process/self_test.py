@@ -16,7 +16,8 @@ import numpy as np
 from tangy_hw.device_protocols import PROTOCOLS, Base, Device, DeviceError, Laser, MachineClock
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.registry import Wiring, known_drivers, open_device
-from tangy_hw.navigation.limits import laser_of
+from tangy_hw.navigation.limits import laser_of, reach_of
+from tangy_hw.navigation.poses import up_to
 from tangy_hw.perception.camera_hub import Sources
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
@@ -228,10 +229,10 @@ def _data_problem(robot: Robot, name: str, device: Device | Camera, reading: Rea
 def _measured(robot: Robot, name: str, device: Device | Camera, reading: Reading) -> str:
     """Return what a device measures, to compare it with the robot: "" if nothing is known."""
     if name == "laser" and (stamped := cast(Laser, device).scan) is not None:
-        scan = stamped.value
+        scan = up_to(stamped.value, reach_of(robot))
         span = math.degrees(abs(scan.step) * (len(scan.ranges) - 1))
         told = f"{len(scan.ranges)} beams over {span:.0f}°"
-        met = np.where(scan.ranges > 0, scan.ranges, np.inf)
+        met = np.where((scan.ranges > 0) & (scan.ranges < scan.farthest), scan.ranges, np.inf)
         if not np.isfinite(met).any():
             return f"{told}, and none of them meets anything"
         nearest = int(np.argmin(met))
