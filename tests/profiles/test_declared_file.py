@@ -182,11 +182,43 @@ def test_a_table_is_read_as_spreadsheets_save_it(
 
 
 @pytest.mark.parametrize(
+    "table",
+    [
+        "ask;right\nWhere, when?;Here",
+        "sep=;\r\nask;right\r\nWhere, when?;Here\r\n",
+        "\n\nask;right\n\nWhere, when?;Here\n;\n",
+        'ask,right\r"Where, when?",Here\r',
+        "ask;right;;\nWhere, when?;Here;;\n;;;\n",
+        'ask,right\r\n"Where,\nwhen?",Here\r\n',
+        'ask,right\r\n"Where,\r\nwhen?",Here\r\n',
+    ],
+    ids=[
+        *("no end", "sep", "blank lines", "old ends", "empty columns", "a line break in a cell"),
+        "a Windows line break in a cell",
+    ],
+)
+def test_what_spreadsheets_add_to_a_table_is_no_part_of_it(folder: Path, table: str) -> None:
+    (folder / "t.csv").write_bytes(table.encode())
+    rows = read_csv(SourceText("a.toml", ""), ("items",), folder / "t.csv")
+    assert rows == [["ask", "right"], ["Where, when?", "Here"]]
+
+
+def test_only_columns_that_are_empty_throughout_are_left_out(folder: Path) -> None:
+    (folder / "t.csv").write_text("ask,right,\nWhere?,Here,\nWhen?,Now,late\n")
+    source = SourceText("a.toml", "")
+    assert read_csv(source, ("items",), folder / "t.csv") == []
+    (folder / "t.csv").write_text("ask,right,hint\nWhere?,Here,\n")
+    rows = read_csv(source, ("items",), folder / "t.csv")
+    assert rows == [["ask", "right", "hint"], ["Where?", "Here", ""]]
+
+
+@pytest.mark.parametrize(
     ("content", "told"),
     [
         (b"PK\x03\x04\0\0", "save it as CSV UTF-8"),
         (b"ask,right\nWhat?,\x81", "save it as CSV UTF-8"),
         (b'ask,right\n"a "b" c",d', "line 2: its quotation marks do not match"),
+        (b'sep=,\nask,right\n"a "b" c",d', "line 3: its quotation marks do not match"),
         (b"the question,a,b,c,right,hint\n1,2,3,4,2,6", "such as 'the_question'"),
     ],
 )

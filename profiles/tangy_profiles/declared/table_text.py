@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import io
 from dataclasses import dataclass
 
 SEPARATORS = (",", ";", "\t")
@@ -27,25 +28,28 @@ def table_rows(content: bytes, file: str) -> tuple[list[list[str]], ReadAs]:
     """Divide a table into rows of cells, and tell how it was read.
 
     Its text is UTF-8, UTF-16 with a byte order mark, or else Windows-1252. Its separator is the one
-    that is most frequent in the header; a line `sep=;` before it is skipped.
+    that is most frequent in the header; a line `sep=;` before it is skipped. A line break within a
+    cell becomes a space. Empty columns at the end are left out.
 
     Raises:
         ValueError: a sentence that says what is wrong, without a full stop.
     """
     text, windows = _decoded(content)
-    lines = text.splitlines()
-    if lines and lines[0].casefold().startswith("sep="):
-        del lines[0]
-    header = lines[0] if lines else ""
+    lines = io.StringIO(text, newline=None).readlines()
+    skipped = 1 if lines and lines[0].casefold().startswith("sep=") else 0
+    header = next((line for line in lines[skipped:] if line.strip()), "")
     separator = max(SEPARATORS, key=header.count)
-    reader = csv.reader(lines, delimiter=separator, strict=True)
+    reader = csv.reader(lines[skipped:], delimiter=separator, strict=True)
     try:
-        rows = [[cell.strip() for cell in row] for row in reader if row]
+        rows = [[" ".join(cell.split("\n")).strip() for cell in row] for row in reader if row]
     except csv.Error:
         raise ValueError(
-            f"line {reader.line_num}: its quotation marks do not match. Put quotation marks around"
-            " the whole cell, and write those inside it twice, as a spreadsheet program does"
+            f"line {skipped + reader.line_num}: its quotation marks do not match. Put quotation"
+            " marks around the whole cell, and write those inside it twice, as a spreadsheet"
+            " program does"
         ) from None
+    while rows and rows[0][1:] and all(len(r) == len(rows[0]) and not r[-1] for r in rows):
+        rows = [row[:-1] for row in rows]
     return rows, ReadAs(file, windows, separator)
 
 
