@@ -149,7 +149,10 @@ def read_question(text: str, find_person: Callable[[str], str]) -> AsksAbout | N
     """
     words = " ".join(text.replace("\u2019", "'").split()).strip(" ?.!,")
     plain = _in_full(words.casefold())
-    if not _ASKING.fullmatch(plain) or not _ABOUT_TURN.search(plain) or _OTHER.search(plain):
+    if not _ASKING.fullmatch(plain) or not _ABOUT_TURN.search(plain):
+        return None
+    others = (other[0] for other in _OTHER.finditer(plain))
+    if any(not _called(other, find_person) for other in others):  # "when is Mark next" asks
         return None
     if _PROPOSAL.match(plain):
         return None
@@ -194,7 +197,15 @@ def _is_verb(words: list[str], first: int, last: int) -> bool:
 
 def _person(name: str, find_person: Callable[[str], str]) -> str:
     """Return the person with a name, perhaps in the genitive; "" for nobody."""
-    for wanted in (name, name.removesuffix("'s"), name.removesuffix("'"), name.removesuffix("s")):
-        with suppress(TangyError):
-            return find_person(wanted)
+    genitive = "" if name in _NOT_NAMES else name.removesuffix("s")  # "has" is not Ha's
+    for wanted in (name, name.removesuffix("'s"), name.removesuffix("'"), genitive):
+        if wanted and (person := _called(wanted, find_person)):
+            return person
+    return ""
+
+
+def _called(name: str, find_person: Callable[[str], str]) -> str:
+    """Return the person with exactly this name or id; "" for nobody."""
+    with suppress(TangyError):
+        return find_person(name)
     return ""

@@ -391,6 +391,25 @@ def test_a_verb_before_its_subject_is_no_name(robot: Robot) -> None:
     assert read_question("is Will the next one", find) == AsksAbout(("user4",))
 
 
+@pytest.mark.parametrize(
+    "words", ["when is it Mark's turn", "why are you not going to Mark?", "is mark next"]
+)
+def test_a_name_that_is_also_a_word_of_other_questions_is_a_name(robot: Robot, words: str) -> None:
+    assert read_question(words, finder(robot)) is None
+    robot.workspace.rename(robot.workspace.find_person("user4"), "Mark")
+    assert read_question(words, finder(robot)) == AsksAbout(("user4",))
+    assert read_question("when is Mark's card next", finder(robot)) is None
+
+
+def test_a_verb_that_ends_in_s_is_no_genitive(robot: Robot) -> None:
+    robot.workspace.rename(robot.workspace.find_person("user4"), "Ha")
+    assert read_question("why has nobody helped", finder(robot)) is None
+    assert read_question("when is Ha's turn", finder(robot)) == AsksAbout(("user4",))
+    assert read_question("when is berta\u2019s or idas turn", finder(robot)) == AsksAbout(
+        ("user3", "user2")
+    )
+
+
 def find_two(wanted: str) -> str:
     if wanted.casefold() not in ("rosa", "otto"):
         raise TangyError(f"There is nobody called {wanted!r}.")
