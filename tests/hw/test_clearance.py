@@ -114,6 +114,27 @@ class TestPeople:
         assert past(Twist(0.25, 0.3), side) == STILL
         assert past(Twist(0.5, 0.0), replace(side, vy=1.2)) == Twist(0.5, 0.0)
 
+    def test_from_a_walker_who_stays_behind_it_the_robot_drives_on_slowly(self) -> None:
+        slow = Twist(0.25, 0.0)
+        assert past(slow, person(-0.3, 0.5, 0.0, -0.6)) == slow
+        assert past(slow, person(0.3, 0.5, 0.0, -0.6)) == STILL
+        assert past(Twist(0.25, 0.3), person(-0.7, 0.5, 0.8, -0.6)) == Twist(0.25, 0.3)
+        back = Twist(-0.25, 0.0)
+        assert past(back, person(0.3, 0.5, -0.6, -1.2)) == back
+        assert past(back, person(-0.3, 0.5, 0.0, -0.6)) == STILL
+
+    def test_the_robot_gives_up_speed_before_a_walker_gets_beside_it(self) -> None:
+        assert past(Twist(0.5, 0.0), person(-0.7, 0.7, 1.2)).forward == pytest.approx(0.15)
+        turns = past(Twist(0.25, 1.0), person(-0.7, 0.9, 1.2, -0.6))  # it turns towards them
+        assert turns.forward == pytest.approx(0.1)
+
+    def test_a_robot_with_corners_may_turn_away_from_a_walker_on_the_spot(self) -> None:
+        corners = ((0.3, 0.25), (-0.3, 0.25), (-0.3, -0.25), (0.3, -0.25))
+        limits = replace(LIMITS, corners=corners)
+        spin = Twist(0.0, 0.5)
+        around = NearbyPeople((person(-0.5, 0.6, 0.0, -0.3),), np.zeros((0, 2)))
+        assert limit_near_people(spin, around, limits) == spin
+
     def test_the_robot_slows_down_while_a_walker_is_hidden_behind_it(self) -> None:
         behind = replace(person(-1.2, 0.2, 0.8), hidden=True)
         assert past(Twist(0.5, 0.2), behind) == Twist(
