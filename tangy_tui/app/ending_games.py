@@ -27,6 +27,8 @@ class EndingGames:
     autonomy: AutonomyDial
     stopped: bool
     going: bool
+    ending = False
+    """Whether staff have ended the game, and its end is still to be carried out."""
     _turn: threading.RLock
 
     def refusal(self, *, asking: bool = True) -> StaffNote | None:
@@ -37,6 +39,11 @@ class EndingGames:
         """Log what staff did (see `Supervision.note`)."""
         raise NotImplementedError
 
+    @property
+    def _stands_at_end(self) -> bool:
+        """Whether a robot already stands because staff have ended the game."""
+        return self.ending and self.robot.there
+
     def wait_for_turn(self, seconds: float) -> bool:
         """Wait up to some s for the current behaviour to end; return whether it has ended."""
         if self._turn.acquire(timeout=seconds):
@@ -44,15 +51,19 @@ class EndingGames:
             return True
         return False
 
-    def break_off(self, why: str = ENDED) -> None:
-        """Abort the robot's current behaviour, because the game or the program ends."""
+    def break_off(self) -> None:
+        """Abort the robot's current behaviour, and begin no other, because the game ends."""
+        self.ending = True
+        self._abort(ENDED)
+
+    def _abort(self, why: str) -> None:
         self.supervision.stopped_by_staff()
         self.robot.stop(why)
 
     def hold(self, why: str) -> None:
         """Abort the robot's current behaviour, and take no further step."""
         self.stopped = True
-        self.break_off(why)
+        self._abort(why)
 
     def interrupt(self, patience: float = LEAVES_SECONDS) -> None:
         """Stop the robot, wait up to `patience` s for it, and leave the game to be resumed."""
@@ -66,6 +77,11 @@ class EndingGames:
         asked = game.question is not None and game.question.fault != TAKEN_OVER
         events = game.give_up() if asked or game.halted is not None else game.leave()
         return [StaffNote("ended"), *events]
+
+    def _ended(self) -> None:
+        """Note that an end was carried out; a game that could not be ended stands still."""
+        self.ending = False
+        self.stopped |= not self.supervision.over
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
         """Stop the robot, wait up to `patience` s for it, and log that the game was left."""

@@ -162,7 +162,7 @@ class GameController(HandingOver):
             stopped = self.stopped
             if stopped and self.past is None:
                 return []
-            self.taking_over = self.single = self.paused_itself = False
+            self.ending = self.taking_over = self.single = self.paused_itself = False
             self.going = not stopped and (self.past is None or self.goes_on)
             self.autonomy.reset()
             if not stopped:
@@ -189,7 +189,7 @@ class GameController(HandingOver):
         with self._turn, serving():
             game = self.supervision
             self.nudge.clear()
-            if game.over:
+            if game.over or self.ending:
                 return []
             waits = self.stopped or self._holds or not self.going or game.halted is not None
             if waits or game.question is not None or self.proposal is not None:
@@ -259,7 +259,7 @@ class GameController(HandingOver):
         try:
             return self.carry_out(command)
         except TangyError as error:
-            return [StaffNote("cannot", str(error))]
+            return [StaffNote("ends") if self._stands_at_end else StaffNote("cannot", str(error))]
 
     def carry_out(self, command: GameCommand) -> list[Result]:
         """Carry out a command of staff; raises TangyError if that fails or cannot be logged."""
@@ -277,6 +277,8 @@ class GameController(HandingOver):
             finally:
                 if isinstance(command, CallAgain):
                     self._calls_again.release()
+                if isinstance(command, EndGame):
+                    self._ended()
                 self.plan.forget_early(command)
                 self._tell_all()
 
@@ -289,6 +291,8 @@ class GameController(HandingOver):
         too = self.joined and isinstance(command, Joins)
         if self.supervision.over and not too and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("joining" if self.joined else "no game")]
+        if self._stands_at_end and not isinstance(command, StopRobot | EndGame):
+            return [StaffNote("ends")]
         if isinstance(command, PlanCommand):
             return self.plan.do(command)
         match command:
@@ -377,7 +381,8 @@ class GameController(HandingOver):
             TangyError: it could not be stored; nothing of it is kept.
         """
         with self._turn, serving():
-            if refused := self.refusal(asking=False):
+            refused = StaffNote("ends") if self._stands_at_end else self.refusal(asking=False)
+            if refused is not None:
                 return [refused]
             self.stepping = True
             try:

@@ -51,6 +51,7 @@ RefusalKind = Literal[
     "stopped first",
     "asks first",
     "halted first",
+    "ends",
     "no game",
     "joining",
     "no robot",

@@ -246,10 +246,11 @@ class StaffLines:
             if line is None:
                 self._sure.drop()
                 self._ahead.ended = not early
+                ends = self._controller.ending or (self._begun.is_set() and self._game.over)
                 if early:  # handle them first
                     self._ahead.lines.put(None)
                     time.sleep(LOOK_SECONDS)
-                elif not self._controller.waits:
+                elif not (ends or self._controller.waits):
                     self._telling.write(staff_lines.NO_MORE)
                 self._controller.nudge.set()
             elif (

@@ -228,6 +228,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return "Tangy is asking: answer first, or type: give back."
         case "halted first":
             return "Not now: a fault halts Tangy. Type: what."
+        case "ends":
+            return "Tangy does not do that any more: you ended the game."
         case "no game":
             return "There is no game now."
         case "no robot":

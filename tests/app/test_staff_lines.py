@@ -89,6 +89,14 @@ def test_a_game_plays_to_its_end_after_the_last_line(workspace: Workspace) -> No
     assert any("The game is over" in line for line in written)
 
 
+def test_the_last_line_that_ends_a_game_does_not_say_that_the_game_goes_on(
+    workspace: Workspace,
+) -> None:
+    written, _ = told(workspace, "end")
+    assert any("You ended the game" in line for line in written)
+    assert NO_MORE not in written
+
+
 @pytest.mark.parametrize("lines", [("pause",), ("stop the robot",), ("take over",)])
 def test_a_game_that_waits_without_further_lines_ends(
     workspace: Workspace, lines: tuple[str, ...]
