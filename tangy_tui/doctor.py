@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import locale
 import os
 import shutil
@@ -148,7 +147,7 @@ def examine_robot(
         folder: the data folder, which knows the paired tablets.
     """
     from tangy_hw.drivers.chest_pairing import keep_pairing
-    from tangy_hw.robot_process.self_test import try_robot
+    from tangy_hw.robot_process.isolated_test import try_robot_apart
 
     # Children of the drivers write their log to this terminal, among the findings.
     os.environ.setdefault(LEVEL, "WARNING")
@@ -162,7 +161,7 @@ def examine_robot(
         known = robot.devices.get(device)
         return f"{robot.title}'s {known.label if known is not None else device}"
 
-    tried = asyncio.run(try_robot(robot, activity, cameras, seconds, pairing=pairing))
+    tried = try_robot_apart(robot, activity, cameras, seconds, pairing=pairing)
     return [
         Finding(label(one.device), one.ok, one.text, broken=not one.ok and not one.absent)
         for one in tried

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar, runtim
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import Reading
+from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,6 +29,11 @@ Value = TypeVar("Value", covariant=True)
 
 class DeviceError(TangyError):
     """A device did not execute a command, or is unavailable; one sentence that names it."""
+
+
+def fails(error: Exception) -> str:
+    """Return what is told about a driver that raises an error."""
+    return plain(f"its driver fails: {type(error).__name__}: {error}").rstrip(".") + "."
 
 
 class Pose(NamedTuple):

@@ -16,6 +16,7 @@ import pytest
 from tangy_hw.device_protocols import MachineClock, Odometry, Pose, Scan, Stamped, Twist
 from tangy_hw.drivers import registry
 from tangy_hw.drivers.registry import DriverKind
+from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.robot_process.self_test import SelfTestResult, try_robot
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import NEVER, OK, Reading
@@ -267,3 +268,26 @@ async def test_a_robot_with_a_laser_scanner_needs_a_base(
     found = await tried(driven(tmp_path, laser='kind = "good"'), 0.05)
     assert not found["base"].absent and "cannot drive without one" in found["base"].text
     assert found["stop_button"].absent
+
+
+@pytest.mark.parametrize("raises", [False, True])
+async def test_a_shared_connection_that_hangs_is_told_of_each_of_its_devices(
+    raises: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tangy_hw.robot_process.self_test.START_SECONDS", 0.02)
+
+    async def start(_: object) -> None:
+        if raises:
+            raise OSError("no such network")
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(Rosbridge, "start", start)
+    good = DriverKind(("laser",), lambda *_: Wheels("laser", scan(ROUND)))
+    monkeypatch.setattr(registry, "DRIVERS", {**registry.DRIVERS, "good": good})
+    shared = 'kind = "rosbridge", at = "ws://127.0.0.1:9"'
+    robot = driven(tmp_path, base=shared, stop_button=shared, laser='kind = "good"')
+    found = await tried(robot, 0.05)
+    assert "" not in found and found["laser"].ok
+    says = "OSError: no such network." if raises else "has not started within"
+    for name in ("base", "stop_button"):
+        assert says in found[name].text and not found[name].ok

@@ -14,7 +14,7 @@ import pytest
 from tangy_hw.audio.arecord import list_microphones
 from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.chest_pairing import keep_pairing
-from tangy_hw.robot_process import self_test
+from tangy_hw.robot_process import isolated_test
 from tangy_hw.robot_process.self_test import SelfTestResult
 from tangy_profiles import log_file
 from tangy_profiles.activity import load_activity
@@ -160,6 +160,7 @@ def test_an_unreadable_data_folder_is_broken(
     assert data_folder(tmp_path / "new").state == "broken"
 
 
+@pytest.mark.slow
 def test_the_devices_of_a_robot_are_tested_and_undriven_ones_missing(tmp_path: Path) -> None:
     robot = tmp_path / "mine.toml"
     driver = 'laser = { kind = "scip", at = "/dev/no-such-port" }'
@@ -217,13 +218,13 @@ def test_a_requested_broken_part_sets_the_exit_status(
 def test_a_robot_that_works_does_not_set_the_exit_status(
     tangy: Callable[..., CompletedProcess[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async def works(*_: object, **__: object) -> list[SelfTestResult]:
+    def works(*_: object, **__: object) -> list[SelfTestResult]:
         return [
             SelfTestResult("laser", True, "mine works."),
             SelfTestResult("arms", False, "", True),
         ]
 
-    monkeypatch.setattr(self_test, "try_robot", works)
+    monkeypatch.setattr(isolated_test, "try_robot_apart", works)
     done = tangy("doctor", "--robot", "tangy", "--data", tmp_path / "data")
     assert "ok       Tangy's laser scanner: mine works." in done.stdout
     assert done.returncode == 0

@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose, members_of
+from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose, fails, members_of
 from tangy_hw.drivers.ros_status import RosDiagnostics
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
@@ -350,8 +350,7 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
     except TangyError:
         raise
     except Exception as error:  # of another package
-        why = f"its driver fails: {type(error).__name__}: {error}".rstrip(".")
-        raise settings.wrong(f"{why}.") from error
+        raise settings.wrong(fails(error)) from error
     settings.close()
     lacks = [name for name in members_of(device) if not _has(opened, name)]
     if lacks:

@@ -23,11 +23,11 @@ from tangy_hw.device_protocols import (
     Scan,
     Stamped,
     Twist,
+    fails,
 )
 from tangy_hw.navigation.poses import compose, relative_pose, up_to
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, NEVER, STALE, Reading
-from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
     from tangy_hw.robot_process.body import Body
@@ -49,14 +49,9 @@ ORIGIN = 0.05  # m and rad from the pose that a base has when it is switched on
 GAP_SECONDS = 1.0  # of silence, after which a base may have been switched on again
 
 
-def fails(error: Exception) -> str:
-    """Return what is told about a driver that raises an error."""
-    return plain(f"its driver fails: {type(error).__name__}: {error}").rstrip(".") + "."
-
-
-def hangs(seconds: float) -> str:
-    """Return what is told about a driver whose `start` takes longer than some s."""
-    return f"its driver has not started within {seconds:g} s."
+def hangs(seconds: float, did: str = "started") -> str:
+    """Return what is told about a driver that takes longer than some s to start."""
+    return f"its driver has not {did} within {seconds:g} s."
 
 
 async def start_device(device: Device, seconds: float = START_SECONDS) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -13,7 +13,15 @@ from typing import Any, cast
 
 import numpy as np
 
-from tangy_hw.device_protocols import PROTOCOLS, Base, Device, DeviceError, Laser, MachineClock
+from tangy_hw.device_protocols import (
+    PROTOCOLS,
+    Base,
+    Device,
+    DeviceError,
+    Laser,
+    MachineClock,
+    fails,
+)
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.registry import Wiring, known_drivers, open_device
 from tangy_hw.navigation.limits import laser_of, reach_of
@@ -23,7 +31,6 @@ from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
 from tangy_hw.robot_process.driver_checks import (
     START_SECONDS,
-    fails,
     hangs,
     odometry_problem,
     scan_problem,
@@ -37,6 +44,8 @@ from tangy_profiles.room import load_room
 CLOSE_SECONDS = 5.0
 SECONDS = 5.0  # for a working device to send data: cameras take longest
 TICK_SECONDS = 0.05
+STARTS, READS, CLOSES = "start", "read", "close"  # steps of a driver
+Calls = Callable[[str, str], object]
 NEEDED = ("base", "laser")
 SEATED = ("1", "2", "3", "4")  # the people do not matter here
 
@@ -61,6 +70,8 @@ async def try_robot(
     seconds: float = SECONDS,
     *,
     pairing: Mapping[str, str] = MappingProxyType({}),
+    failed: Mapping[str, str] = MappingProxyType({}),
+    calls: Calls = lambda device, step: None,
 ) -> list[SelfTestResult]:
     """Open every driver and camera of a robot's profile, and check their data.
 
@@ -70,55 +81,54 @@ async def try_robot(
         cameras: sources of its cameras, by device.
         seconds: timeout for a device.
         pairing: secrets of paired tablets, as in `RobotSetup`.
+        failed: devices that are not tried, and why.
+        calls: called with a device and a step before its driver is called.
 
     Returns:
         The results, in the order of the profile.
     """
     wiring = Wiring(robot, activity, MachineClock(), pairing=pairing)
-    found: dict[str, SelfTestResult] = {}
+    found = {name: SelfTestResult(name, False, why) for name, why in failed.items()}
     opened: dict[str, Device | Camera] = {
-        name: Camera(source, device=name) for name, source in cameras.items()
+        name: Camera(source, device=name) for name, source in cameras.items() if name not in found
     }
     for name, driver in robot.drivers.items():
-        if name == REQUESTS:
-            continue  # not a driver: tested below
+        if name == REQUESTS or name in found:
+            continue  # requests have no driver: tested below
+        calls(name, STARTS)
         try:
             opened[name] = open_device(wiring, name, {"kind": driver.kind, **driver.settings})
         except DeviceError as error:
             found[name] = SelfTestResult(name, False, str(error))
-    shared: Sequence[Any] = (*wiring.links.values(), *wiring.diagnosing.values())
-    started: list[Any] = []
+    started: list[tuple[str, Any]] = []
     try:
-        for one in (*shared, *opened.values()):
-            started.append(one)
-            name = next((name for name, device in opened.items() if device is one), "")
-            try:
-                async with asyncio.timeout(START_SECONDS) as limit:
-                    await one.start()
-            except Exception as error:
-                if limit.expired():
-                    found[name] = SelfTestResult(name, False, hangs(START_SECONDS))
-                elif name:
-                    found[name] = _fails(name, error)
-                else:
-                    raise
+        for names, one in _parts(robot, opened, wiring):
+            if all(name in found for name in names):
+                continue  # its connection has failed
+            calls(names[0], STARTS)
+            started.append((names[0], one))
+            if why := await _start(one):
+                found |= {name: SelfTestResult(name, False, why) for name in names}
         tested = {name: one for name, one in opened.items() if name not in found}
         until = time.monotonic() + seconds
         while time.monotonic() < until:
-            if all(_works(name, one) for name, one in tested.items()):
+            if all(_works(name, one, calls) for name, one in tested.items()):
                 break
             await asyncio.sleep(TICK_SECONDS)
         for name, one in tested.items():
+            calls(name, READS)
             try:
                 found[name] = _tried(robot, name, one, wiring, seconds)
             except Exception as error:
-                found[name] = _fails(name, error)
+                found[name] = SelfTestResult(name, False, fails(error))
     finally:
-        for one in reversed(started):
+        for name, one in reversed(started):
+            calls(name, CLOSES)
             with suppress(Exception):  # the others must be closed as well
                 async with asyncio.timeout(CLOSE_SECONDS):
                     await one.close()
-    if REQUESTS in robot.devices:
+    if REQUESTS in robot.devices and REQUESTS not in found:
+        calls(REQUESTS, READS)
         found[REQUESTS] = await _try_requests(robot, seconds)
     for name, device in robot.devices.items():
         if device.looks_at and name not in found:
@@ -133,6 +143,28 @@ async def try_robot(
             found[name] = SelfTestResult(name, False, what, absent=not needed)
     return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
             if name in found]  # fmt: skip
+
+
+def _parts(
+    robot: Robot, opened: Mapping[str, Device | Camera], wiring: Wiring
+) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Yield what is to be started, in order, with the devices that depend on it."""
+    for links in (wiring.links, wiring.diagnosing):
+        for at, link in links.items():
+            users = (name for name in opened if name in robot.drivers)
+            yield tuple(n for n in users if robot.drivers[n].settings.get("at") == at), link
+    for name, device in opened.items():
+        yield (name,), device
+
+
+async def _start(part: Any) -> str:
+    """Start a device or a connection; return why it fails, "" if it does not."""
+    try:
+        async with asyncio.timeout(START_SECONDS) as limit:
+            await part.start()
+    except Exception as error:
+        return hangs(START_SECONDS) if limit.expired() else fails(error)
+    return ""
 
 
 async def _try_requests(robot: Robot, seconds: float) -> SelfTestResult:
@@ -158,8 +190,9 @@ async def _try_requests(robot: Robot, seconds: float) -> SelfTestResult:
     return SelfTestResult(REQUESTS, works, text)
 
 
-def _works(name: str, device: Device | Camera) -> bool:
+def _works(name: str, device: Device | Camera, calls: Calls) -> bool:
     """Return whether a device works; one that fails need not be waited for."""
+    calls(name, READS)
     try:
         reading = device.reading()
         return reading.state == OK and reading.age < NEVER and not _unsent(name, device)
@@ -172,11 +205,6 @@ def _unsent(name: str, device: Device | Camera) -> str:
     if name == "laser" and cast(Laser, device).scan is None:
         return "scan"
     return "odometry" if name == "base" and cast(Base, device).odometry is None else ""
-
-
-def _fails(name: str, error: Exception) -> SelfTestResult:
-    """Return the result of a driver, perhaps of another package, that raises an error."""
-    return SelfTestResult(name, False, fails(error))
 
 
 def _tried(
