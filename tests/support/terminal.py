@@ -20,7 +20,7 @@ from time import monotonic
 
 import pyte
 
-PATIENCE = 30.0
+PATIENCE = 60.0
 """Seconds after which an expected text counts as missing."""
 
 IDLE = 0.15
