@@ -3,7 +3,8 @@
 Run by hand: `python -m tests.bench.people_drives [SCENE ...] --drives 60`. The geometry is that of
 `people_simulation`. A touch counts by how it began: the robot drove, with the person ahead
 (ahead) or not (behind); or a person walked into a robot that stood. No real person or base
-took part.
+took part. The smallest gap is given twice: whoever came nearer, and (driven) as the robot left it
+when it drove nearer to a person who stood.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ def row(scene: str, found: Sequence[Drive]) -> str:
     arrived = [drive.time for drive in found if drive.arrived]
     told = sum(drive.told == "blocked" and not drive.arrived for drive in found)
     near = min((drive.nearest for drive in found), default=inf)
+    left = min((drive.driven_to for drive in found), default=inf)
     fast = [speed for drive in found for speed in drive.near] or [0.0]
     ahead = [t.speed for drive in found for t in drive.touches if t.kind == "ahead"]
     behind = [t.speed for drive in found for t in drive.touches if t.kind == "behind"]
@@ -44,7 +46,7 @@ def row(scene: str, found: Sequence[Drive]) -> str:
         f"{scene:<10} touched ahead {sum(d.count('ahead') for d in found):2}{speeds}, "
         f"behind {sum(d.count('behind') for d in found):2}{slow}; "
         f"walked into it {sum(d.count('stood') for d in found):2}; "
-        f"nearest {near:5.2f} m; arrived {len(arrived):2} of {len(found)} "
+        f"nearest {near:5.2f} m, driven {left:5.2f} m; arrived {len(arrived):2} of {len(found)} "
         f"({told} told as blocked) in {median(arrived) if arrived else inf:4.1f} s; "
         f"silent for {max((d.silent for d in found), default=0.0):.1f} s; "
         f"within 1 m {np.mean(fast):.2f} m/s, p95 {np.percentile(fast, 95):.2f}"

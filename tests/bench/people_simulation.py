@@ -127,6 +127,9 @@ class Drive:
     told: str = ""
     touches: list[Touch] = field(default_factory=list)
     nearest: float = inf
+    """The smallest gap to a torso, whoever came nearer, in m."""
+    driven_to: float = inf
+    """The smallest gap that the robot's own motion left to a person who stood, in m."""
     near: list[float] = field(default_factory=list)
     """Its speed while a person was within a metre ahead, in m/s."""
     silent: float = 0.0
@@ -160,9 +163,14 @@ class Drive:
 
     def move(self) -> None:
         """Move the robot and everybody for a tick, and record who touches whom."""
-        self.pose = driven(self.pose, self.twist, TICK)
+        at = self.pose
+        self.pose = driven(at, self.twist, TICK)
         for person in self.people:
             self._note(person)
+            if person.now == (0.0, 0.0):
+                gap = person.gap(self.pose, self.away)
+                nearer = gap < person.gap(at, self.away)
+                self.driven_to = min(self.driven_to, gap) if nearer else self.driven_to
             before = person.gap(self.pose, self.away)
             was, person.now = (person.x, person.y), (0.0, 0.0)
             if self.time < person.bumped:
