@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, hypot, inf, pi
+from math import atan2, cos, hypot, inf, pi, radians, sin
 
 import numpy as np
 import pytest
@@ -112,7 +112,25 @@ class TestPeople:
         side = person(-0.1, 0.95, 0.2, -1.2)
         assert past(Twist(0.5, 0.0), side) == STILL
         assert past(Twist(0.25, 0.3), side) == STILL
-        assert past(Twist(0.5, 0.0), replace(side, vy=1.2)) == Twist(0.5, 0.0)
+        assert past(Twist(0.5, 0.0), replace(side, y=1.8, vy=1.2)) == Twist(0.5, 0.0)
+
+    def test_the_robot_can_stop_before_a_walker_beside_it_who_turns_round(self) -> None:
+        """It leaves room for them at any bearing up to 110 degrees, also where it drives away."""
+        for bearing in (80.0, 95.0, 105.0):
+            c, s = cos(radians(bearing)), sin(radians(bearing))
+            for far in (0.95, 1.1, 1.25, 1.4):  # going away
+                away = person(far * c, far * s, 1.2 * c, 1.2 * s)
+                fast = past(Twist(0.5, 0.0), away).forward
+                stops = LIMITS.latency + fast / LIMITS.full_braking
+                meets = (far - LIMITS.radius - away.half) / LIMITS.approach_turned
+                assert fast == 0.0 or stops < meets, (bearing, far)
+        assert past(Twist(0.5, 0.0), person(0.0, 0.9, 0.0, 1.2)) == STILL
+        assert past(Twist(0.5, 0.0), person(0.0, 1.6, 0.0, 1.2)).forward == 0.5
+
+    def test_the_robot_drives_away_slowly_from_a_walker_who_may_turn_behind_it(self) -> None:
+        behind = person(-0.8, 0.2, -1.2)
+        assert 0 < past(Twist(0.5, 0.0), behind).forward <= LIMITS.people_speed
+        assert past(Twist(0.5, 0.0), replace(behind, x=-1.7)).forward == 0.5
 
     def test_from_a_walker_who_stays_behind_it_the_robot_drives_on_slowly(self) -> None:
         slow = Twist(0.25, 0.0)
@@ -140,7 +158,8 @@ class TestPeople:
         assert past(Twist(0.5, 0.2), behind) == Twist(
             LIMITS.people_speed, 0.2 * LIMITS.people_speed / 0.5
         )
-        assert past(Twist(0.5, 0.2), replace(behind, hidden=False)) == Twist(0.5, 0.2)
+        seen = past(Twist(0.5, 0.2), replace(behind, hidden=False))
+        assert LIMITS.people_speed < seen.forward < 0.5  # it stops before they turn round and come
         assert past(Twist(0.5, 0.2), replace(behind, pace=0.0)) == Twist(0.5, 0.2)
 
     def test_the_robot_slows_down_more_for_a_new_track(self) -> None:

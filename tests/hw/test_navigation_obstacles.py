@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from tangy_hw.device_protocols import STILL, Pose, Scan
+from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.obstacles import Obstacles
@@ -16,10 +16,11 @@ from tangy_hw.navigation.occupancy import seat_feet, table_legs, with_feet
 from tangy_hw.navigation.poses import IDENTITY
 from tangy_hw.navigation.surroundings import Surroundings
 from tests.bench.people_drives import MAP, ROOM, drives
-from tests.bench.people_simulation import Drive, Person
+from tests.bench.people_simulation import TICK, Drive, Person
 from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
 from tests.hw.raycast import look, room_sides
 
+HERE = Pose(5.0, 2.5, 0.0)
 LEGS = [(x / 10, 2.7, x / 10 + 0.15, 2.85) for x in range(0, 100, 3)]
 
 
@@ -84,6 +85,16 @@ class TestObstacles:
             around.see(here, here.pose, scan, 0.4)
             seen.append(len(around.standing))
         assert seen[:8] == [0] * 8 and seen[-1] == len(around.points) > 0
+
+    def test_who_is_seen_for_the_first_time_may_walk(self) -> None:
+        """A track is confirmed by the third scan: the robot slows down at the first."""
+        person = Person(HERE.x + 1.2, HERE.y, pi)
+        drive = Drive(HERE, HERE, [person], np.random.default_rng(1))
+        around, speeds = Surroundings(MAP, IDENTITY, MotionLimits()), []
+        for _ in range(12):
+            around.see(Estimate(HERE, np.zeros((3, 3)), 0.0, 1.0, 300), HERE, drive.look(), TICK)
+            speeds.append(around.limited(Twist(0.5, 0.0)).forward)
+        assert max(speeds[:3]) < 0.4 and speeds[-1] == 0.5
 
     def test_what_was_gone_in_the_meantime_is_seen_anew(self) -> None:
         obstacles, here = Obstacles(MAP), Pose(6.4, 1.2, pi / 2)

@@ -6,8 +6,9 @@ faster than they walked lately. When it is driven by hand, it also assumes that 
 set off at a walking pace. The assumed speeds are settings (`MotionLimits`), below the 1.6 m/s of
 the standard, with which a robot could never drive up to a seat. Only motion that brings the robot
 nearer to a person than stopping does is limited: the robot may drive away from a person who
-approaches it. From a walker who would reach it before it stands it drives away slowly, and only if
-they stay behind it: somebody who comes from the side is ahead of a robot that turns towards them.
+approaches it. From a walker who would reach it before it stands, as they walk or if they turn
+round, it drives away slowly, and only if they stay behind it: somebody who comes from the side
+meets it before it has passed.
 """
 
 from __future__ import annotations
@@ -136,24 +137,40 @@ def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
     half = turned / 2
     chord = along * np.sinc(half / np.pi)
     robot = np.column_stack((chord * np.cos(half), chord * np.sin(half)))
-    people = bodies.at + times[:, None, None] * bodies.velocity
-    driving = _off(people - robot[:, None], turned, limits)
-    standing = _off(people, np.zeros_like(turned), limits)
-    near = driving < bodies.apart + bodies.approach * times[:, None]
-    if (near & (driving < standing + bodies.leeway)).any():
+    drives = _Motion(twist, robot, turned)
+    walking = bodies.at + times[:, None, None] * bodies.velocity
+    keep = bodies.apart + bodies.approach * times[:, None]
+    turn = bodies.apart + np.where(bodies.turned > 0, bodies.turned * times[:, None], -np.inf)
+    return _stays_clear(drives, walking, keep, bodies.leeway, limits) and _stays_clear(
+        drives, bodies.at[None], turn, bodies.leeway, limits
+    )
+
+
+class _Motion(NamedTuple):
+    """A twist, and where the robot is (times, 2) and how far it has turned (times,) meanwhile."""
+
+    twist: Twist
+    robot: Floats
+    turned: Floats
+
+
+def _stays_clear(
+    drives: _Motion, people: Floats, apart: Floats, leeway: Floats, limits: MotionLimits
+) -> bool:
+    """Return whether a motion keeps apart (times, n) from people (times, n, 2), or is an escape."""
+    twist, robot, turned = drives
+    seen = people - robot[:, None]
+    driving = _off(seen, turned, limits)
+    standing = _off(people, np.zeros(len(people)), limits)
+    near = driving < apart
+    if (near & (driving < standing + leeway)).any():
         return False
-    walkers = near & (bodies.leeway > 0.0)
-    if twist.forward and walkers.any():
-        slowly = abs(twist.forward) <= limits.people_speed
-        front = people - robot[:, None] if twist.forward > 0.0 else robot[:, None] - people
-        if not slowly or (walkers & _not_behind(front, turned)).any():
-            return False
-    if not bodies.turned.any():
+    walkers = near & (leeway > 0.0)
+    if not twist.forward or not walkers.any():
         return True
-    driving = _off(bodies.at - robot[:, None], turned, limits)
-    standing = _off(bodies.at[None], np.zeros(1), limits)
-    near = (driving < bodies.apart + bodies.turned * times[:, None]) & (bodies.turned > 0)
-    return not bool((near & (driving < standing + bodies.leeway)).any())
+    front = seen if twist.forward > 0.0 else -seen
+    slowly = abs(twist.forward) <= limits.people_speed
+    return slowly and not (walkers & _not_behind(front, turned)).any()
 
 
 def _not_behind(people: Floats, turned: Floats) -> NDArray[np.bool_]:

@@ -201,6 +201,12 @@ class PeopleTracker:
         """Confirmed tracks, in the odometry frame."""
         return tuple(one.track for one in self._followed if one.hits >= SURE)
 
+    @property
+    def unconfirmed(self) -> tuple[Track, ...]:
+        """New tracks in the latest scan that are not confirmed yet, in the odometry frame."""
+        new = (one for one in self._followed if one.hits < SURE and one.unseen == 0.0)
+        return tuple(one.track for one in new)
+
     def _expected(self, odometry: Pose) -> list[tuple[float, float]]:
         """Return the predicted positions of confirmed tracks, in the robot's frame."""
         there = [

@@ -44,6 +44,7 @@ class Surroundings:
         self._laser, self._limits = laser, limits
         self._pose = IDENTITY
         self._tracks: tuple[Track, ...] = ()
+        self._unconfirmed: tuple[Track, ...] = ()
         self._ends: Floats = np.zeros((0, 2))
 
     def see(self, estimate: Estimate, odometry: Pose, scan: Scan, dt: float) -> None:
@@ -54,6 +55,8 @@ class Surroundings:
         unmapped = self._obstacles.unmapped(estimate.pose, scan) if estimate.found else None
         tracks = self._tracker.update(odometry, scan, dt, unmapped)
         self._tracks = tuple(one.seen_from(odometry) for one in tracks)
+        new = self._tracker.unconfirmed
+        self._unconfirmed = tuple(one.seen_from(odometry) for one in new)
         points = endpoints(scan, REACH, self._laser)
         if unmapped is not None:
             points = points[self._obstacles.among(transform_points(points, estimate.pose))]
@@ -98,8 +101,12 @@ class Surroundings:
         return transform_points(np.array(found, dtype=np.float64).reshape(-1, 2), self._pose)
 
     def limited(self, twist: Twist) -> Twist:
-        """Return the part of a command that may be driven near the people around."""
-        return limit_near_people(twist, NearbyPeople(self._tracks, self._ends), self._limits)
+        """Return the part of a command that may be driven near the people around.
+
+        What a first scan shows may be a person who walks: they count before they are confirmed.
+        """
+        around = NearbyPeople((*self._tracks, *self._unconfirmed), self._ends)
+        return limit_near_people(twist, around, self._limits)
 
     def held(self, twist: Twist) -> BlockingPerson:
         """Return the kind of person for whom it stands or creeps instead; "" if it does not."""
