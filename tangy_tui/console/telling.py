@@ -62,7 +62,10 @@ class GameTelling:
                 broken_off = isinstance(one, GameEnded) and one.stopped is not None
                 self.stopped |= broken_off and not self.ended
                 on = self._controller.goes_on
-                lines = game_lines(one, game, self._name, answered, goes_on=on)
+                lines = game_lines(
+                    one, game, self._name, answered,
+                    goes_on=on, stopped=self._controller.stopped, ends=self._controller.ending,
+                )  # fmt: skip
                 if isinstance(one, Acted):
                     lines = self._progress.step(one, lines)
                 elif isinstance(one, ResumedGame):

@@ -42,6 +42,8 @@ class Done:
     """The facts after it, in a live game of an activity by facts."""
     stopped: bool = False
     """Whether people stopped the robot before it was done."""
+    ended: bool = False
+    """Whether staff ended the game before it was done."""
 
 
 def done_of(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Any, Literal, TypeAlias
 
@@ -304,6 +304,8 @@ def _replay(
                     new -= {action.person}
                 if action.did in ("stopped", "let go on"):
                     stopped = action.did == "stopped"
+                if action.did == "ended":
+                    _break_off_last(replay.moments)
                 # while a step was carried out that comes later
                 acted = max(acted, action.seconds or 0.0)
                 pauses.did(action.did, max(acted, replay.seconds))
@@ -326,6 +328,12 @@ def _replay(
     replay.seconds = max(acted, replay.seconds)
     replay.staff_pauses = pauses.total(replay.seconds)
     return replay
+
+
+def _break_off_last(moments: list[Moment]) -> None:
+    """Mark the last step as ended by staff if it was not completed, and nothing followed it."""
+    if moments and isinstance(last := moments[-1].what, Done) and not last.completed:
+        moments[-1] = replace(moments[-1], what=replace(last, ended=not last.stopped))
 
 
 def _answered(

@@ -5,18 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tangy_profiles.declared.whom import addressee
 from tangy_tui.learning.policy import SURE
-from tangy_tui.text.activities import selector_words
 from tangy_tui.text.numbers import counted, listed, often
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_profiles.behaviour import Action
-    from tangy_profiles.state import ActivityState
     from tangy_tui.learning.conflicts import DemonstratedStep
     from tangy_tui.learning.explanation import DecisionReasons
-    from tangy_tui.learning.policy import Decision, Policy
 
 
 def shown_here(seen: int, share: float) -> str:
@@ -73,39 +68,6 @@ def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -
 def reasons_words(activity: Activity, why: DecisionReasons) -> list[str]:
     """Explain a decision in sentences, without its situation."""
     return why_words(activity, why)[1:]
-
-
-def because_words(decision: Decision) -> str:
-    """Give the reason in a few words: a rule, a teacher's answer, demonstrations, or votes."""
-    if decision.whatever and not decision.seen:
-        return f"by a rule: whatever {listed(decision.whatever, 'or')}"
-    if decision.behaviour in decision.right:
-        shown = shown_here(decision.seen, share=1.0) if decision.seen else ""
-        return f"{shown}, and called right" if shown else "as a teacher said"
-    return shown_here(decision.seen, decision.share)
-
-
-def addressed_words(
-    policy: Policy, action: Action, state: ActivityState, name: Callable[[str], str]
-) -> str:
-    """Name the target of an action, and why: " (Rosa, who asked first)".
-
-    Args:
-        policy: the policy that decided.
-        action: the action.
-        state: the state before the action.
-        name: returns a person's name.
-    """
-    if not action.target:
-        return ""
-    ways = addressee(policy.whom, action.behaviour, state)
-    because = (
-        selector_words(ways.selectors[0]).removeprefix("the person ")
-        if len(action.behaviour.to) > 1
-        else ""
-    )
-    right = ways.sure and ways.person == action.target and because
-    return f" ({name(action.target)}, {because})" if right else f" ({name(action.target)})"
 
 
 def shown_words(activity: Activity, shown: DemonstratedStep, name: Callable[[str], str]) -> str:

@@ -22,12 +22,13 @@ from tangy_tui.interaction.game_events import (
 from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.text.changes import changed_lines
-from tangy_tui.text.decisions import HOW_SURE, addressed_words, because_words, why_words
+from tangy_tui.text.decisions import HOW_SURE, why_words
 from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted, of_times, often
-from tangy_tui.text.situations import Name, kept_words, moment_words, once_words
+from tangy_tui.text.situations import Name, kept_words, once_words
+from tangy_tui.text.steps import step_sentence, unfinished_words
 
 if TYPE_CHECKING:
     from tangy_profiles.state import Response
@@ -43,7 +44,6 @@ SHOWS = {
     "log": "Show the log",
     "faults": "Show the faults of this game",
 }
-NOT_FINISHED = "   Tangy did not finish this."
 SENSORS = "Show the sensors, and what cameras see"
 """The names of the number keys' actions."""
 
@@ -55,6 +55,8 @@ def game_lines(
     teacher: str = "",
     *,
     goes_on: bool = False,
+    stopped: bool = False,
+    ends: bool = False,
 ) -> list[str]:
     """Describe one event of a game in lines.
 
@@ -64,6 +66,8 @@ def game_lines(
         name: returns a person's name for an id.
         teacher: who answered Tangy's question.
         goes_on: whether a resumed game continues at once.
+        stopped: whether the robot is stopped.
+        ends: whether staff have ended the game.
     """
     activity = supervision.world.activity
     match event:
@@ -71,15 +75,14 @@ def game_lines(
             return [begun_words(supervision.game.log.number(game))]
         case ResumedGame(game, steps=steps):
             return [resumed_words(supervision.game.log.number(game), steps, goes_on=goes_on)]
-        case Acted(number, state, decision, choice, action, outcome, _, speech):
-            target = addressed_words(supervision.policy, action, state, name)
-            how = f", {choice.strategy}" if choice else ""
-            why = f"as {teacher} said" if teacher else because_words(decision)
-            return [
-                f"{number}. {moment_words(activity, state, name)} -> "
-                f"{action.behaviour.question}{target}{how}, {why}",
-                f"   {says_line(speech)}" if outcome.completed else NOT_FINISHED,
-            ]
+        case Acted(number, state, _, choice, action, outcome, _, speech):
+            step = step_sentence(
+                activity, state, action.behaviour.name, action.target, name,
+                strategy=choice.strategy if choice else "", teacher=teacher,
+            )  # fmt: skip
+            unfinished = unfinished_words(stopped=stopped, ended=ends)
+            said = says_line(speech) if outcome.completed else unfinished
+            return [f"{number}. {step}", f"   {said}"]
         case Diagnosed() | Moved():
             return fault_lines(event)
         case BeliefUpdated(response, belief):

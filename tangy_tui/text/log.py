@@ -37,9 +37,9 @@ from tangy_tui.text.report import (
 from tangy_tui.text.results import progress_line, response_line
 from tangy_tui.text.session_page import CARE, HOW_LONG, NOBODY_NAMED, RESPONDED
 from tangy_tui.text.sessions import note_words, status_words
-from tangy_tui.text.situations import addressed_step, reason_of
 from tangy_tui.text.staff_actions import action_line, chosen_words, with_behaviour
 from tangy_tui.text.staff_report import staff_action_lines
+from tangy_tui.text.steps import step_sentence, unfinished_words
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
 
@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_tui.text.situations import Name
 
-STOPPED_BEFORE = "Tangy had begun this before the stop. It stood still and did not finish."
 MOST_TOLD = 30
 """A report describes up to this many games one by one; of more, only those with problems."""
 
@@ -130,34 +129,16 @@ def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[st
             return [f"   {whose}{move_words(move)}.", *said]
 
 
-def step_sentence(done: Done, activity: Activity | None, name: Name) -> str:
-    """Tell what Tangy did and why: "Go to Rosa, because somebody asks for help."."""
-    situation = done.state.situation
-    behaviour, why, clause = done.behaviour, " / ".join(situation), False
-    if activity is not None:
-        behaviour = activity.behaviour_words(done.behaviour)
-        why, clause = reason_of(activity, done.state, name)
-    if done.teacher:
-        why, clause = "", False
-    whom = name(done.target) if done.target else ""
-    step = addressed_step(behaviour, whom, "" if clause else why)
-    parts = (
-        f"{step[:1].upper()}{step[1:]}",
-        f", with {done.strategy}" if done.strategy else "",
-        f", because {why}" if clause else "",
-        f", as {done.teacher} said" if done.teacher else "",
-    )
-    return f"{''.join(parts)}."
-
-
 def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
-    lines = [step_sentence(done, activity, name)]
+    step = step_sentence(
+        activity, done.state, done.behaviour, done.target, name,
+        strategy=done.strategy, teacher=done.teacher,
+    )  # fmt: skip
+    lines = [step]
     if done.said:
         lines.append(f"   Tangy says: {done.said}")
-    if done.stopped:
-        lines.append(f"   {STOPPED_BEFORE}")
-    elif not done.completed:
-        lines.append("   It could not be carried out.")
+    if not done.completed:
+        lines.append(f"   {unfinished_words(stopped=done.stopped, ended=done.ended)}")
     elif not done.right and not done.teacher:
         lines.append("   That is not what the activity expects here.")
     return lines

@@ -13,7 +13,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.replay import read_replays
-from tangy_tui.text.log import STOPPED_BEFORE, replay_lines
+from tangy_tui.text.log import replay_lines
+from tangy_tui.text.steps import ENDED_BEFORE, NOT_FINISHED, STOPPED_BEFORE
 
 
 @pytest.fixture
@@ -45,3 +46,23 @@ def test_a_step_is_stopped_if_the_robot_was_stopped_when_it_was_over(
     assert (first.stopped, second.stopped, third.stopped) == (False, stopped, False)
     lines = list(replay_lines(replay, workspace.activity, str))
     assert sum(STOPPED_BEFORE in line for line in lines) == stopped
+
+
+@pytest.mark.parametrize("completed", [False, True])
+def test_a_step_that_the_end_of_the_game_broke_off_is_no_failure_of_the_robot(
+    workspace: Workspace, learnt: Policy, completed: bool
+) -> None:
+    game = workspace.supervision(learnt, 3)
+    game.begin()
+    game.step()
+    done = workspace.store.last(GameStep)
+    assert done is not None
+    workspace.store.append(replace(done.record, completed=False))  # of itself, before
+    workspace.store.append(replace(done.record, completed=completed))
+    game.note("ended", "Ada")
+    (replay,) = read_replays(
+        workspace.store, read_games(workspace.store), {"bingo": workspace.activity}, {}
+    )
+    assert [one.ended for one in replay.done] == [False, False, not completed]
+    lines = "\n".join(replay_lines(replay, workspace.activity, str))
+    assert lines.count(ENDED_BEFORE) == (not completed) and lines.count(NOT_FINISHED) == 1

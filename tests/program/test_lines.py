@@ -324,7 +324,7 @@ def test_games_are_printed_step_by_step_with_responses_and_posteriors(
     supervision = workspace.supervision(policy, 3)
     said = play_by_turns(supervision, games=3, name=workspace.name, scripted=True)
     assert said[0] == "Game 1 begins."
-    assert said[1] == "1. the game has not begun -> greet everyone, as shown twice"
+    assert said[1] == "1. Greet everyone, because the game has not begun."
     assert sum(line.startswith("The game is over after ") for line in said) == 3
     late = " did it a little late, which does not count. "
     learnt = [line for line in said if " did it. " in line or late in line]
@@ -438,9 +438,7 @@ def test_the_verification_of_an_answer_accepts_yes_in_full(workspace: Workspace)
     assert said[0].startswith("Did you say: greet everyone?")
     assert said[1] == said[2] == "Please answer Y to do it, or N for another command."
     assert said[3].startswith("  y: ")
-    assert "1. the game has not begun -> greet everyone, as Cleo said" in said, (
-        "not by votes for another"
-    )
+    assert "1. Greet everyone, as Cleo said." in said, "not by votes for another"
     left = asked(workspace, "greet everyone", "quit", "greet everyone", "y")
     assert left[1:] == ["You ended the game. Tangy stands still."], "after quit nothing is read"
 
