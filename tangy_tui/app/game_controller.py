@@ -22,7 +22,6 @@ from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result, attend
 from tangy_tui.app.game_commands import (
     AT_ONCE,
-    TAKEN_OVER,
     WITHOUT_GAME,
     Accept,
     Acknowledge,
@@ -62,7 +61,6 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
 ControllerOutput: TypeAlias = Result | Verification
-TOOK_OVER = "You say what Tangy does next."
 
 
 class GameController(HandingOver):
@@ -195,9 +193,7 @@ class GameController(HandingOver):
             if waits or game.question is not None or self.proposal is not None:
                 return game.look()
             if self.taking_over and not game.waiting:
-                asked: list[Event] = list(game.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER))
-                self.taking_over = False  # only now: an answer typed earlier finds the question
-                return asked
+                return self._ask_next()
             if not (self._may_step() and self.awake()):
                 return []
             if self.single:
@@ -371,7 +367,7 @@ class GameController(HandingOver):
         if self.supervision.halted is not None:
             return StaffNote("halted first")
         if asking and self.supervision.question is not None:
-            return StaffNote("asks first")
+            return self.asks_first()
         return None
 
     def answer(self, behaviour: Behaviour, target: str | None) -> list[Result]:

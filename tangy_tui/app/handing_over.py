@@ -6,6 +6,9 @@ from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import TAKEN_OVER
 from tangy_tui.app.pausing_games import PausingGames
 from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.monitoring.supervision import Event
+
+TOOK_OVER = "You say what Tangy does next."
 
 
 class HandingOver(PausingGames):
@@ -35,16 +38,32 @@ class HandingOver(PausingGames):
         return [StaffNote("takes over")]
 
     def _give_back(self) -> list[Result]:
+        given, self.taking_over = self.taking_over, False  # first: `next` asks while it is set
         question = self.supervision.question
-        if not self.taking_over and question is None:
-            return [StaffNote("nothing asked")]
         asked = question is not None and question.fault == TAKEN_OVER
-        if self.taking_over or asked:
-            self.note("gave back")
-        self.taking_over = False
+        if not given and not asked:
+            return [StaffNote("nothing asked") if question is None else self.asks_first()]
+        self.note("gave back")
         if asked:
             self.supervision.game.withdraw()
         return [StaffNote("given back")]
+
+    def _ask_next(self) -> list[Event]:
+        """Ask what Tangy does next, unless staff hand control back meanwhile."""
+        asked: list[Event] = list(
+            self.supervision.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER)
+        )
+        if not self.taking_over:
+            self.supervision.game.withdraw()
+            return []
+        self.taking_over = False  # only now: an answer typed earlier finds the question
+        return asked
+
+    def asks_first(self) -> StaffNote:
+        """Return the refusal of what has to wait for an answer: about control, or about Tangy."""
+        question = self.supervision.question
+        wanted = question is not None and question.fault == TAKEN_OVER
+        return StaffNote("asks first", TAKEN_OVER if wanted else "")
 
     def _confirm(self, *, yes: bool) -> list[Result]:
         if not self.autonomy.confirm(yes=yes):

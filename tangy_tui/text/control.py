@@ -225,7 +225,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "stopped first":
             return f"Not now: {stopped_words(noted.words)}. Type first: go on."
         case "asks first":
-            return "Tangy is asking: answer first, or type: give back."
+            return f"Tangy is asking: answer first{', or type: give back' if about else ''}."
         case "halted first":
             return "Not now: a fault halts Tangy. Type: what."
         case "ends":

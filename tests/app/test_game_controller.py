@@ -42,6 +42,7 @@ from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.replay import read_replays
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import replay_lines
 from tangy_tui.text.staff_report import staff_rows
 from tests.hw.links import FakeLink
@@ -216,6 +217,66 @@ def test_staff_take_over_choose_a_behaviour_and_give_back(live: Played) -> None:
     words = [words for _, _, words in staff_rows([replay], name)]
     assert words.count("told Tangy what to do: tell a joke") == 1
     assert live.next() == ["call number"]
+
+
+def test_who_takes_over_during_a_pause_or_a_proposal_ends_it(live: Played) -> None:
+    control = live.control
+    live.next()
+    control.apply(Pause())
+    live.link.time += 10.0
+    assert control.view().paused == 10.0
+    control.apply(TakeOver())
+    assert control.view().paused is None and control.asks_next
+    control.apply(GiveBack())
+    assert not control.asks_next
+    control.apply(SetAutonomy("each"))
+    assert live.next() == [] and control.proposal is not None
+    control.apply(TakeOver())
+    assert control.proposal is None
+
+
+def test_control_is_given_back_before_tangy_has_asked(live: Played) -> None:
+    control = live.control
+    live.next()
+    control.apply(TakeOver())
+    assert kinds(control.apply(GiveBack())) == ["given back"]
+    assert not control.taking_over and live.next() == ["call number"]
+    assert [did for did, _ in live.logged()] == ["took over", "gave back"]
+
+
+def test_a_question_of_tangys_own_needs_an_answer(live: Played) -> None:
+    control, game = live.control, live.control.supervision
+    live.next()
+    list(game.game.ask("Nobody has shown that.", "What now?", ""))
+    assert control.asks_next and game.question is not None
+    needs = StaffNote("asks first")
+    assert control.apply(GiveBack()) == control.apply(TakeOver()) == [needs]
+    assert noted_words(needs, str) == "Tangy is asking: answer first."
+    assert control.asks_next and live.logged() == []
+
+
+def test_control_that_is_given_back_while_tangy_begins_to_ask_is_given_back(
+    live: Played, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    control = live.control
+    live.next()
+    control.apply(TakeOver())
+    assert live.world is not None
+    observe, given = live.world.observe, list[ControllerOutput]()
+
+    def meanwhile() -> Any:
+        given.extend(given or control.apply(GiveBack()))
+        return observe()
+
+    with monkeypatch.context() as patched:
+        patched.setattr(live.world, "observe", meanwhile)
+        assert control.next() == []
+    assert kinds(given) == ["given back"] and not control.asks_next
+    assert live.next() == ["call number"]
+    control.apply(TakeOver())
+    assert kinds(list(control.next())) == ["Unsure"]
+    assert control.apply(TakeOver()) == [control.asks_first()]
+    assert control.asks_first().about
 
 
 def test_the_game_waits_for_the_confirmation_of_staff(live: Played) -> None:
