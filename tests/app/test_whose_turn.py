@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_hw.robot_client.help_requests import SignState
 from tangy_profiles.activity import known_activities, load_activity
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.errors import TangyError
@@ -357,6 +358,11 @@ def test_what_proposes_something_is_no_question(robot: Robot, words: str) -> Non
     assert read_inquiry(words) is None
 
 
+@pytest.mark.parametrize("words", ["why did nobody win", "why does nobody see my card"])
+def test_a_question_about_something_else_is_not_answered_so(words: str) -> None:
+    assert read_inquiry(words) is None
+
+
 def test_a_proposal_with_any_or_ever_asks() -> None:
     assert read_inquiry("why don't you do anything?") == "why"
     assert read_inquiry("why don't you say hello first") is None
@@ -376,11 +382,16 @@ def test_words_that_are_no_names_are_not_refused_as_such(robot: Robot, words: st
 
 @pytest.mark.parametrize(
     "words",
-    ["why does Tangy never go to Xaver", "why does nobody help Xaver", "when will it visit Xaver"],
+    [
+        *("why does Tangy never go to Xaver", "why does nobody help Xaver"),
+        *("when will it visit Xaver", "when is it Xaver's turn"),
+    ],
 )
 def test_unknown_names_are_refused(robot: Robot, words: str) -> None:
     with pytest.raises(TangyError, match="There is nobody called 'Xaver'"):
         read_question(words, finder(robot))
+    with pytest.raises(TangyError, match="There is nobody called 'strauss'"):
+        read_question("when will it visit Strau\u00df", finder(robot))
 
 
 def test_a_verb_before_its_subject_is_no_name(robot: Robot) -> None:
@@ -389,6 +400,8 @@ def test_a_verb_before_its_subject_is_no_name(robot: Robot) -> None:
     for words in ("when will you come to us", "when will it come", "how long will the robot wait"):
         assert read_question(words, find) is None
     assert read_question("is Will the next one", find) == AsksAbout(("user4",))
+    assert read_question("when will Tangy go to Berta", find) == AsksAbout(("user3",))
+    assert read_question("is Berta next, or Will", find) == AsksAbout(("user3",))
 
 
 @pytest.mark.parametrize(
@@ -404,6 +417,7 @@ def test_a_name_that_is_also_a_word_of_other_questions_is_a_name(robot: Robot, w
 def test_a_verb_that_ends_in_s_is_no_genitive(robot: Robot) -> None:
     robot.workspace.rename(robot.workspace.find_person("user4"), "Ha")
     assert read_question("why has nobody helped", finder(robot)) is None
+    assert read_question("does Ha Berta wait", finder(robot)) == AsksAbout(("user4", "user3"))
     assert read_question("when is Ha's turn", finder(robot)) == AsksAbout(("user4",))
     assert read_question("when is berta\u2019s or idas turn", finder(robot)) == AsksAbout(
         ("user3", "user2")
@@ -433,6 +447,49 @@ def test_no_words_for_a_step_ask_about_the_game(activity: str) -> None:
 
 def finder(robot: Robot) -> Callable[[str], str]:
     return lambda who: robot.workspace.find_person(who).id
+
+
+def test_who_and_what_comes_before_a_person_is_told_in_order() -> None:
+    ann, ben = PersonNow("ann", "comes", 1, 90.0), PersonNow("ben", "asks", 2, 50.0)
+    cleo = PersonNow("cleo", "asks", 3, 42.0)
+    moment = GameMoment(people=(ann, ben, cleo), with_robot=ann, waiting=(ben, cleo))
+    between = replace(moment, calls_between=True)
+    lines = text.turn_lines(PersonTurn(cleo, between), str.title, None)
+    assert lines == [
+        "Cleo asked 40 s ago.",
+        "Tangy is on its way to Ann.",
+        "Before Cleo, Tangy goes to Ben.",
+        "In between it may call some numbers.",
+        "Tangy has not been with Cleo in this game.",
+    ]
+    first = replace(between, calls_first=2)
+    told = text.turn_lines(PersonTurn(cleo, first), str.title, None)
+    assert told == [*lines[:2], text_of_calls(2), lines[2], lines[4]]
+    assert (
+        text.turn_lines(PersonTurn(ben, between), str.title, None)[2] == "After that, Ben is next."
+    )
+    assert text.turn_lines(PersonTurn(ann, moment), str.title, None) == [
+        "Tangy is on its way to Ann, because Ann has waited longest."
+    ]
+    later = replace(moment, people=(replace(ann, waits=30.0), ben, cleo))
+    assert text.turn_lines(PersonTurn(later.people[0], later), str.title, None) == [
+        "Tangy is on its way to Ann, because Ann comes first."
+    ]
+
+
+def text_of_calls(count: int) -> str:
+    return f"Tangy calls {count} numbers first, because everybody waits for one."
+
+
+@pytest.mark.parametrize(
+    ("can_ask", "sign", "told"), [(True, "", True), (False, "", False), (True, "no sensor", False)]
+)
+def test_staff_are_told_to_ask_for_somebody_only_if_they_can(
+    can_ask: bool, sign: SignState, told: bool
+) -> None:
+    turn = PersonTurn(PersonNow("ann", "plays"), GameMoment(), sign, can_ask=can_ask)
+    lines = text.turn_lines(turn, str.title, None)
+    assert ("If Ann needs help, type: help Ann." in lines) is told
 
 
 def test_in_a_game_with_turns_the_order_of_turns_is_told() -> None:

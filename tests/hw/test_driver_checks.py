@@ -61,6 +61,19 @@ def test_bad_data_are_an_error_until_they_make_sense_again(
     assert data.report(parts.laser).state == data.report(parts.base).state == OK
 
 
+def test_the_device_with_bad_data_is_named_once(caplog: pytest.LogCaptureFixture) -> None:
+    one = Checked()
+    good = one.base.odometry
+    for number in range(3):
+        one.base.odometry = at(math.nan, 0.0, 0.0, 1.0 + number)
+        assert one.states() == (OK, ERROR)
+    assert [record.getMessage() for record in caplog.records] == [
+        "base: its odometry has a NaN or an infinite number."
+    ]
+    one.base.odometry, one.laser.scan = good, replace(one.laser.sent, stamp=math.nan)
+    assert one.states() == (ERROR, OK)
+
+
 @pytest.mark.parametrize(
     "gap", [0.05, 8.0], ids=["at once, from far away", "after a time without the base"]
 )
@@ -98,8 +111,16 @@ def test_a_base_that_was_only_silent_for_a_while_keeps_its_odometry() -> None:
         ((3.0, 2.0, 1.0), (0.0, 0.0, 1.0), 8.0, True),
         ((-0.3, 0.0, 0.0), (0.0, 0.0, 0.0), 0.8, False),
         ((0.0, 0.0, 3.1), (0.0, 0.0, -3.1), 0.05, False),
+        ((3.0, 2.0, 1.0), (9.0, 2.0, 1.0), 0.05, True),
+        ((0.4, 0.0, 0.0), (0.0, 0.0, 0.0), 8.0, True),
+        ((0.1, 0.0, 0.8), (0.0, 0.0, 0.0), 8.0, True),
+        ((0.2, 0.0, 0.0), (0.0, 0.0, 0.0), 8.0, False),
+        ((0.3, 0.0, 1.0), (0.0, 0.0, 1.0), 8.0, False),
     ],
-    ids=["only turned", "a compass", "it drove across", "half a turn"],
+    ids=[
+        *("only turned", "a compass", "it drove across", "half a turn", "elsewhere at once"),
+        *("close to the origin", "turned at the origin", "at the origin", "it drove to the origin"),
+    ],
 )
 def test_a_new_beginning_is_told_from_a_drive(
     before: tuple[float, float, float],

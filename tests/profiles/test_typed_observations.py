@@ -10,7 +10,8 @@ import pytest
 from tangy_profiles.activity import read_activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame
-from tangy_profiles.declared.told import told_now
+from tangy_profiles.declared.judging import judged
+from tangy_profiles.declared.told import Told, told_now
 from tangy_profiles.declared.typed_observations import TypedObservation, meant, sayable
 from tests.support.declared import declared
 
@@ -93,6 +94,7 @@ def test_options_are_suggested_only_while_their_question_is_open() -> None:
         ("answer right", "right"),
         ("answer is not right", "wrong"),
         ("not right", "wrong"),
+        ("not wrong", "right"),
         ("wrong", "wrong"),
     ],
 )
@@ -103,6 +105,77 @@ def test_staff_can_say_that_an_answer_was_right_or_wrong(said: str, value: str) 
     assert told.judgement == value
     game.observe(*told.meant)
     assert game.value("answer", "user1") == value
+
+
+def test_no_answer_is_no_verdict() -> None:
+    game = _game("trivia", "welcome everyone", "ask question")
+    assert meant(game, "user1", "none") is None
+    assert meant(game, "user1", "answer none") is None
+    fact = game.declaration.facts["answer"]
+    assert judged(fact, game.declaration.items, game.row, "=none", 1.0) is None
+
+
+def test_an_answer_that_was_not_clear_is_not_judged() -> None:
+    game = _game("trivia", "welcome everyone", "ask question")
+    told = told_now(game, "user1", "earth", 0.5)
+    assert told == Told(TypedObservation("answer", "user1", "earth"), True, "", False)
+
+
+def test_a_value_that_is_denied_is_not_observed() -> None:
+    assert meant(_game("reminiscence"), "user1", "not sad") is None
+    assert meant(_game("exercises"), "user1", "not joins") == TypedObservation(
+        "joins", "user1", "no"
+    )
+
+
+def test_words_without_a_name_are_about_the_person_whom_tangy_addresses() -> None:
+    game = DeclaredGame(declared("reminiscence").declaration, PLAYERS)
+    assert meant(game, None, "sad") == TypedObservation("mood", None, "sad")
+    game.execute("open the circle", None)
+    game.execute("show a picture", "user2")
+    assert meant(game, None, "long") == TypedObservation("story", "user2", "long")
+    alone = DeclaredGame(declared("reminiscence").declaration, ("user3",))
+    assert meant(alone, None, "sad") == TypedObservation("mood", "user3", "sad")
+
+
+def _buzz(folder: Path, *changes: tuple[str, str]) -> DeclaredGame:
+    """Return a game in which anybody may call out an answer; its first question is asked."""
+    for name in ("buzz.toml", "buzz.csv"):
+        shutil.copy(ACTIVITIES / name, folder)
+    file = folder / "buzz.toml"
+    for before, after in changes:
+        assert before in file.read_text()
+        file.write_text(file.read_text().replace(before, after))
+    activity = read_activity(file)
+    assert isinstance(activity, DeclaredActivity)
+    game = DeclaredGame(activity.declaration, PLAYERS)
+    game.execute("welcome all", None)
+    return game
+
+
+def test_a_fact_is_no_free_answer(tmp_path: Path) -> None:
+    game = _buzz(tmp_path)
+    assert meant(game, "user1", "tired") == TypedObservation("tired", "user1", "yes")
+    game.execute("ask all", None)
+    assert meant(game, "user1", "tired") == TypedObservation("tired", "user1", "yes")
+    assert meant(game, "user1", "tea") == TypedObservation("guess", "user1", "tea")
+
+
+def test_an_answer_counts_if_the_game_waits_for_those_of_all(tmp_path: Path) -> None:
+    every = ("any guess is right", "every guess is right"), ("any guess is wrong", "clock is >=25")
+    game = _buzz(tmp_path, *every, ('about = "whose guess is wrong" },\n', 'sees = ["clock"] },\n'))
+    for who in PLAYERS:
+        early = told_now(game, who, "right", 1.0)
+        assert early is not None and not early.counts
+    game.execute("ask all", None)
+    for who in PLAYERS:
+        told = told_now(game, who, "right", 1.0)
+        assert told is not None and told.counts
+        game.observe(*told.meant)
+    assert game.stage()[0].name == "right"
+    game.execute("tell it", None)
+    late = told_now(game, "user1", "wrong", 1.0)
+    assert late is not None and not late.counts
 
 
 @pytest.mark.parametrize(
@@ -149,3 +222,10 @@ def test_a_fact_without_a_name_is_only_assumed_of_the_person_in_turn() -> None:
     assert own is not None and own.meant.who == "user1" and own.counts
     heard = told_now(_game("exercises"), None, "tired", 1.0, "speech")
     assert heard is not None and heard.meant.who == "user1"
+    named = told_now(_game("exercises"), "user3", "tired", 1.0, "speech")
+    assert named == Told(TypedObservation("tired", "user3", "yes"), True, "", False)
+
+
+def test_a_fact_of_the_group_needs_no_name() -> None:
+    told = told_now(_game("memory"), None, "miss", 1.0)
+    assert told == Told(TypedObservation("cards", None, "miss"), True, "", False)
