@@ -402,13 +402,13 @@ async def test_esc_returns_the_choice_to_tangy(run: Run, program: Program) -> No
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
         await until_shown(pilot, lambda: any(one.is_open for one in live(pilot).query(AskingPanel)))
-        await until_shown(pilot, lambda: live(pilot).is_current)  # not the line typed ahead
+        await until_shown(pilot, lambda: live(pilot).is_active)  # not the line typed ahead
         await pilot.press("escape")  # out of the line
         await until_shown(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
         steps = live(pilot).control.supervision.steps
         await pilot.press("escape")
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps > steps)
-        assert not live(pilot).control.supervision.over and live(pilot).is_current
+        assert not live(pilot).control.supervision.over and live(pilot).is_active
         assert not live(pilot).query(AskingPanel)
         assert not live(pilot).control.taking_over
 
@@ -422,7 +422,7 @@ async def test_typing_stop_stops_and_swallows_the_rest_of_the_sentence(
         await pilot.press("p")
         pilot.type(*"stop the robot", "enter")
         await until_shown(pilot, lambda: live(pilot).control.stopped)
-        assert live(pilot).is_current, "no dialog was opened by the rest"
+        assert live(pilot).is_active, "no dialog was opened by the rest"
         assert "stop: staff stopped it" in link.told
 
 

@@ -120,7 +120,7 @@ async def test_key_7_shows_the_devices_of_the_robot(
         assert "working" in row(pilot, "wheels") and "0.1 s" in row(pilot, "wheels")
         assert "from /dev/video0" in told
         await pilot.press("escape")
-        assert live(pilot).is_current
+        assert live(pilot).is_active
 
 
 async def test_each_device_names_its_driver(run: Run, make: Callable[[], SensorsScreen]) -> None:
