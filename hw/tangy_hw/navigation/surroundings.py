@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -55,8 +56,10 @@ class Surroundings:
         unmapped = self._obstacles.unmapped(estimate.pose, scan) if estimate.found else None
         tracks = self._tracker.update(odometry, scan, dt, unmapped)
         self._tracks = tuple(one.seen_from(odometry) for one in tracks)
-        new = self._tracker.unconfirmed
-        self._unconfirmed = tuple(one.seen_from(odometry) for one in new)
+        fast = self._limits.approach_turned
+        self._unconfirmed = tuple(
+            replace(one.seen_from(odometry), pace=fast) for one in self._tracker.unconfirmed
+        )
         points = endpoints(scan, REACH, self._laser)
         if unmapped is not None:
             points = points[self._obstacles.among(transform_points(points, estimate.pose))]
@@ -103,7 +106,8 @@ class Surroundings:
     def limited(self, twist: Twist) -> Twist:
         """Return the part of a command that may be driven near the people around.
 
-        What a first scan shows may be a person who walks: they count before they are confirmed.
+        What a first scan shows may be a person who walks: until it is confirmed, it counts as one
+        who walks as fast as people are assumed to.
         """
         around = NearbyPeople((*self._tracks, *self._unconfirmed), self._ends)
         return limit_near_people(twist, around, self._limits)
