@@ -128,8 +128,8 @@ class GamePlanControls:
 
         A claim is judged at once; the group is told later.
         """
-        if isinstance(command, ClaimCard):
-            self._claimed = self.judged(command)
+        if isinstance(command, ClaimCard) and (judged := self.judged(command)) is not None:
+            self._claimed = judged
         if self._idle or not isinstance(command, ComesIn | GoesAway):
             return
         if self._refuses_move(command, self.away) is None:
@@ -140,7 +140,9 @@ class GamePlanControls:
         """Forget what was logged early, once its command was carried out or failed."""
         claimed = self._claimed
         if isinstance(command, ClaimCard) and claimed is not None and claimed.told is None:
-            self._claimed = None
+            claim = self.with_card(command)
+            if claim.card == claimed.card and claim.person in ("", claimed.person):
+                self._claimed = None
         if isinstance(command, ComesIn | GoesAway) and command in self._said:
             self._said.remove(command)
 
@@ -292,7 +294,7 @@ class GamePlanControls:
             kind, rules.claim_wrong
         )
         self._note(kind, person=holder or "", detail=str(card))
-        self._claimed = ClaimNow(
+        self._claimed = claimed = ClaimNow(
             card, holder, kind, world.seconds, len(world.called_now), self._supervision.game.game
         )
         said = words.format(card=card, pattern=pattern.label if pattern else "")
@@ -303,7 +305,8 @@ class GamePlanControls:
             return told
         if holder:
             told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
-            self._claimed = replace(self._claimed, goes=True)
+            if self._claimed is claimed:  # staff may have typed another one meanwhile
+                self._claimed = replace(claimed, goes=True)
         else:
             told.append(StaffNote("whose card", str(card)))
         return told

@@ -159,6 +159,26 @@ def test_a_claim_that_waits_for_the_present_step_is_told(robot: Robot) -> None:
     assert waits not in [*about(robot, "user3"), *now(robot)]
 
 
+@pytest.mark.parametrize("card", [18, 999])
+def test_a_claim_that_comes_while_another_is_announced_keeps_its_own_news(
+    robot: Robot, card: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot.next(2)
+    numbers = robot.world.numbers_on(17)
+    assert numbers is not None
+    robot.world.called.extend(numbers)
+    plan, later = robot.control.plan, ClaimCard(card, "user3")
+    monkeypatch.setattr(robot.world, "announce", lambda words: plan.say_early(later))
+    told = robot.control.apply(ClaimCard(17, "user2"))
+    assert [getattr(one, "kind", "") for one in told] == ["claim right", ""]
+    news = plan.claim
+    assert news is not None
+    if card == 999:  # there is no such card
+        assert news == replace(news, card=17, person="user2", kind="claim right", goes=True)
+    else:
+        assert news == replace(news, card=18, person="user3", told=None, goes=False)
+
+
 def test_numbers_that_come_first_are_counted(taught: Path) -> None:
     planned = Planned(taught, users=24)
     planned.begin(GamePlan(("full card",), visits=True, pace=5))
