@@ -53,7 +53,7 @@ def test_bad_data_are_an_error_until_they_make_sense_again(
     parts.base.odometry = at(math.nan, 0.0, 0.0, 1.0)
     assert (data.scan, data.odometry) == (good, moved)  # the last ones that made sense
     assert data.report(parts.laser).state == data.report(parts.base).state == ERROR
-    assert "laser: 31 of 31 ranges are NaN" in caplog.text
+    assert "laser: none of its 31 distances can be used: all are NaN." in caplog.text
     checked.now = 2.0
     parts.laser.scan = Stamped(scan, 2.0, 3)
     parts.base.odometry = at(2.0, 1.0, 0.0, 2.0)

@@ -204,6 +204,7 @@ ROUND = [2.0] * 100
         ("laser", scan([1.0, *ROUND]), "works: 101 beams over 57°, the nearest thing 1.00 m away"),
         ("laser", scan([math.inf] * 100), "none of them meets anything"),
         ("laser", scan([math.nan, *ROUND]), "1 of 101 ranges are NaN"),
+        ("laser", scan([math.nan] * 40), "sends wrong data: none of its 40 distances can be used"),
         ("laser", scan([-1.0, *ROUND]), "negative"),
         ("laser", scan([1.0, 2.0]), "too few"),
         ("laser", scan([1500.0] * 100), "in m"),

@@ -45,6 +45,17 @@ def test_rules_of_a_missing_device_are_dropped(tmp_path: Path, device: str) -> N
     assert codes(robot, WELL) == []
 
 
+@pytest.mark.parametrize(
+    ("state", "code", "says"),
+    [(STALE, "laser-disconnected", "sends nothing"), (ERROR, "laser-unusable", "cannot use")],
+)
+def test_a_scanner_that_sends_what_cannot_be_used_is_not_silent(
+    state: DeviceState, code: str, says: str
+) -> None:
+    assert codes(load_robot(), failing("laser", state)) == [code]
+    assert says in load_faults(load_robot()).rule(code).console
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_rules_load_for_every_robot_that_ships(name: str) -> None:
     assert load_faults(load_robot(name)).rules[-1].fallback

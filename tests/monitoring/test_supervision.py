@@ -119,7 +119,7 @@ def test_a_measurement_of_nan_is_diagnosed_as_a_fault(
     facts = {"near_share": float("nan"), "variety": 0.3}
     odd = tuple(r._replace(facts=facts) if r.device == "laser" else r for r in WELL)
     monkeypatch.setattr(world_of(game), "health", lambda: odd)
-    assert codes(game.look()) == ["laser-disconnected"]
+    assert codes(game.look()) == ["laser-unusable"]
 
 
 def test_an_unexplained_error_cannot_be_cleared_while_it_lasts(

@@ -120,6 +120,8 @@ def scan_problem(value: Any, now: float | None = None) -> str:
             return "first, step, farthest and stamp of its scan must be numbers."
     except TypeError:
         return "its scan has something else than numbers."
+    if bad == count:
+        return f"none of its {count} distances can be used: all are NaN."
     if bad:
         return f"{bad} of {count} ranges are NaN: a beam without a return is inf."
     if (scan.ranges < 0).any():
