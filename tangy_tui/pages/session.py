@@ -25,7 +25,7 @@ from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 from tangy_tui.text import session_page as say
 from tangy_tui.text.activities import stage_words
 from tangy_tui.text.endings import all_endings, ending_sentence
-from tangy_tui.text.faults import move_words
+from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.player_facts import look_after_lines
 from tangy_tui.text.report import WORLD_WORDS, care_lines

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,12 +21,12 @@ from tangy_tui.monitoring.fault import (
     FaultEvent,
     RecoveryEvent,
 )
+from tangy_tui.text.fault_moves import RECOVERY_WORDS, move_words
 from tangy_tui.text.fault_views import BEGINS, WAITS
-from tangy_tui.text.numbers import listed, ordinal
+from tangy_tui.text.numbers import listed
 from tangy_tui.text.times import clock, time_of_day
 
 if TYPE_CHECKING:
-    from tangy_profiles.game_records import MoveKind
     from tangy_profiles.robot import DeviceProfile, Robot
     from tangy_tui.monitoring.supervision import Supervision
 
@@ -46,47 +46,6 @@ DOING_REMEDIES = {
     "leave to staff": "leaving it to you",
 }
 """Words for Tangy's own recovery actions in progress."""
-
-DONE_REMEDIES = {
-    "spin": "Tangy turned on the spot to find its place",
-    "restart": "it was started again",
-    "replan": "Tangy took another way",
-    "do without": "Tangy does without it",
-    "other requests": "Tangy listens for requests instead",
-    "set aside": "Tangy left it at that",
-    "leave to staff": "Tangy left it to you",
-}
-"""Words for Tangy's own recovery actions when done."""
-
-MOVES: Mapping[MoveKind, str] = {
-    "kept": "kept for later: another fault comes first",
-    "asked": "asked for help",
-    "remedied": "Tangy did something about it by itself",
-    "teacher asked": "asked the teacher",
-    "halted": "halted",
-    "acknowledged": "was acknowledged",
-    "expert called": "staff were shown whom to call",
-    "still there": "it is still there: it must be mended before it can be cleared",
-    "escalated": "that did not help",
-    "went on": "went on",
-    "recovered": "recovered",
-    "taught": "the teacher said what to do",
-    "accepted": "the teacher said that this is all right",
-    "cleared": "was cleared",
-    "ended": "ended by itself",
-    "left": "Tangy left it at that",
-    "given up": "the game was given up",
-    "left open": "was left open at the end of the game",
-}
-"""Words for the recovery moves."""
-
-RECOVERY_WORDS = {
-    "expert": "halt, and ask an expert",
-    "user": "ask a user for help",
-    "teacher": "ask a teacher",
-    "continue": "go on",
-}
-"""Words for the kinds of recovery."""
 
 _DOING = {
     "teacher asked": "asking the teacher",
@@ -320,19 +279,6 @@ def _observed(fact: str, value: Fact) -> str:
     if fact != "state":
         return written(value)
     return f"{STATES[str(value)]} ({value})" if value in STATES else str(value)
-
-
-def move_words(move: RecoveryEvent) -> str:
-    """Name a recovery event in a few words."""
-    words = DONE_REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
-    if move.kind == "escalated":
-        tried = words if move.attempt else "nobody was there for that"
-        return f"{tried}: now {RECOVERY_WORDS[move.to]}"
-    if move.attempt > 1:
-        words = f"{words}, for the {ordinal(move.attempt)} time"
-    if move.by:
-        words = f"{words}, by {move.by}"
-    return words
 
 
 def recovery_words(rule: FaultRule) -> str:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.contacts import EXPERT
 from tangy_tui.text.calls import call_words, expert_words
-from tangy_tui.text.faults import fault_time, kind_words, mark_of, move_words
+from tangy_tui.text.fault_moves import move_words
+from tangy_tui.text.faults import fault_time, kind_words, mark_of
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import Fault, RecoveryEvent

@@ -15,7 +15,7 @@ from tangy_tui.monitoring.session import Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.endings import TO_ITS_END, ending_sentence, ending_words
-from tangy_tui.text.faults import RECOVERY_WORDS, move_words
+from tangy_tui.text.fault_moves import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted, of_times, often
 from tangy_tui.text.player_facts import (
     HEADING,

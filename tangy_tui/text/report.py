@@ -26,7 +26,7 @@ from tangy_tui.monitoring.presence import stays
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
-from tangy_tui.text.faults import move_words
+from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.situations import Name
 from tangy_tui.text.times import length, time_of_day

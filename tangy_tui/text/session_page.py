@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.monitoring.fault import OVER
-from tangy_tui.text.faults import RECOVERY_WORDS
+from tangy_tui.text.fault_moves import RECOVERY_WORDS
 from tangy_tui.text.report import how_long_words
 
 if TYPE_CHECKING:

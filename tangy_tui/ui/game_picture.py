@@ -32,8 +32,9 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.activities import with_activity
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_lines
+from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.fault_views import WAITS
-from tangy_tui.text.faults import kind_words, move_words
+from tangy_tui.text.faults import kind_words
 from tangy_tui.text.games import (
     begun_words,
     broken_off_words,

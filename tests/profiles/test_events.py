@@ -29,7 +29,7 @@ from tangy_profiles.persuading import PERIODS, PERSUASION_METHODS, PRIORS
 from tangy_profiles.records import kind
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import ActivityState, Request, Situation, UserState
-from tangy_tui.text import faults
+from tangy_tui.text import fault_moves
 from tests.support.laws import tried
 
 ROOT = Path(__file__).parents[2]
@@ -114,7 +114,7 @@ def test_a_kind_has_one_record() -> None:
 
 
 def test_every_move_about_a_fault_has_words() -> None:
-    assert set(get_args(MoveKind)) == set(faults.MOVES)
+    assert set(get_args(MoveKind)) == set(fault_moves.MOVES)
 
 
 # ------------------------------------------------------------------------------- round trips

@@ -11,6 +11,7 @@ from tangy_profiles.faults import FaultBook
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.evidence import Label
 from tangy_tui.monitoring.fault import Fault
+from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.fault_views import DONE_WHEN, HOW_KNOWN, WHAT_TO_DO
 from tangy_tui.text.faults import (
     EvidenceLine,
@@ -18,7 +19,6 @@ from tangy_tui.text.faults import (
     fault_time,
     kind_words,
     mark_of,
-    move_words,
     state_words,
 )
 from tangy_tui.ui.clean_output import clean
