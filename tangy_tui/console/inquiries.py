@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
@@ -23,7 +23,7 @@ from tangy_tui.text.control import going_words, proposal_words
 from tangy_tui.text.earlier import earlier_fault_lines, earlier_lines
 from tangy_tui.text.faults import HALTED, advice_lines
 from tangy_tui.text.games import Demonstrations, why_lines
-from tangy_tui.text.messages import ABOVE
+from tangy_tui.text.messages import NONE_YET
 from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.situations import Name, state_words
 from tangy_tui.text.staff_lines import (
@@ -50,6 +50,7 @@ class Inquiries:
         demonstrations: Demonstrations | None,
         find_person: Callable[[str], str],
         earlier: EarlierPart | None = None,
+        told: Callable[[], Sequence[str]] = tuple,
     ) -> None:
         """Answer about the games of a controller.
 
@@ -59,8 +60,9 @@ class Inquiries:
             demonstrations: explain decisions.
             find_person: returns the id of a person by name or id.
             earlier: what happened before the first game was interrupted.
+            told: returns what was told last, with the times.
         """
-        self._controller, self._earlier = controller, earlier
+        self._controller, self._earlier, self._told = controller, earlier, told
         self._game = controller.supervision
         self._name, self._demonstrations = name, demonstrations
         self._find_person = find_person
@@ -93,9 +95,9 @@ class Inquiries:
         if word in WHOSE_CARDS:
             return [cards_line(self._game.world, self._name)]
         if word == BY_ID["messages"].word:
-            told = self._earlier
-            activity = self._game.world.activity
-            return [*(earlier_lines(told, activity, self._name) if told else ()), ABOVE]
+            before, activity = self._earlier, self._game.world.activity
+            lines = earlier_lines(before, activity, self._name) if before else []
+            return [*lines, *self._told()] or [NONE_YET]
         if word in ANSWERS:
             return [NO_QUESTION]
         if word in ("undo", "redo"):

@@ -108,7 +108,9 @@ class StaffLines:
         self._sure = ConfirmingStaff(controller, name, self._yes, telling.write)
         self._freezes = FreezeLines(controller, self._sure, telling.write, watch)
         self._waits = ScriptWaits(controller, self._tell_progress)
-        self._inquiries = Inquiries(controller, name, demonstrations, find_person, earlier)
+        self._inquiries = Inquiries(
+            controller, name, demonstrations, find_person, earlier, telling.last
+        )
         self._questions = AnsweredQuestions(controller, self._yes, self._inquiries, telling.write)
         telling.verify = lambda said: self._questions.verify(said, self._typed)
         self._ahead = ReadAhead(read) if ahead is None else ahead
@@ -265,7 +267,7 @@ class StaffLines:
     def _tell_progress(self) -> None:
         """Write what Tangy does now, and what it asks about a card or after a freeze."""
         self._freezes.ask(self._typed)
-        self._telling.write_all(self._progress.news() if self._begun.is_set() else ())
+        self._telling.tell_lines(self._progress.news() if self._begun.is_set() else ())
         if self._ahead.ended and self._progress.asks:
             self._telling.tell([*self._controller.apply(EndGame())])
 

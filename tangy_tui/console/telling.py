@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
@@ -16,8 +17,12 @@ from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
 from tangy_tui.text.control import claimed_words, noted_words, waits_words
 from tangy_tui.text.games import game_lines
+from tangy_tui.text.messages import told_words
 from tangy_tui.text.situations import Name
+from tangy_tui.text.times import local_now
 
+MOST_TOLD = 20
+"""The lines that are told again, if staff ask for the last messages."""
 SOON_SECONDS = 0.7
 """For a command, before staff are told that it has to wait."""
 
@@ -37,6 +42,7 @@ class GameTelling:
         self._controller, self._name = controller, name
         self._progress, self._also = progress, also
         self._writing = threading.Lock()
+        self._last: deque[str] = deque(maxlen=MOST_TOLD)
         self._write_line = write
         self.verify: Callable[[Verification], object] = lambda said: None
         """Asks staff about what they said that Tangy should do."""
@@ -45,6 +51,16 @@ class GameTelling:
         self.ended = False
         """Whether staff ended a game."""
 
+    def last(self) -> list[str]:
+        """Return what was told last about the game, each with the time of day."""
+        return list(self._last)
+
+    def tell_lines(self, lines: Iterable[str]) -> None:
+        """Write lines about the game, and keep them, to be told again."""
+        for line in lines:
+            self._last.append(told_words(local_now(), line.strip()))
+            self.write(line)
+
     def tell(self, told: Sequence[ControllerOutput]) -> None:
         """Write the lines about some events and results."""
         answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
@@ -52,7 +68,7 @@ class GameTelling:
         events: list[Event] = []
         for one in told:
             if isinstance(one, StaffNote):
-                self.write(noted_words(one, self._name))
+                self.tell_lines([noted_words(one, self._name)])
             elif isinstance(one, Verification):
                 self.verify(one)
                 if isinstance(one, NotUnderstood):
@@ -70,8 +86,8 @@ class GameTelling:
                     lines = self._progress.step(one, lines)
                 elif isinstance(one, ResumedGame):
                     lines = [*lines, *self._progress.resumed()]
-                self.write_all(lines)
-        self.write_all(filter(None, self._also(events)))
+                self.tell_lines(lines)
+        self.tell_lines(filter(None, self._also(events)))
 
     def in_turn(self, command: GameCommand) -> Sequence[ControllerOutput]:
         """Carry out a command once the robot has done its present step; tell if that takes long.

@@ -200,7 +200,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             who = name(about)
             return f"Tangy does not know {who}'s card. Add its number: check 17 {who}."
         case "asked for":
-            return f"{name(about)} asks for help."
+            return f"You asked for {name(about)}. Tangy goes there in turn."
         case (
             "told"
             | "told right"

@@ -29,8 +29,8 @@ MOVES: Mapping[MoveKind, str] = {
     "teacher asked": "asked the teacher",
     "halted": "halted",
     "acknowledged": "was acknowledged",
-    "expert called": "staff were shown whom to call",
-    "still there": "it is still there: it must be mended before it can be cleared",
+    "expert called": "staff saw whom to call",
+    "still there": "it is still there: it must be mended before staff can clear it",
     "escalated": "that did not help",
     "went on": "went on",
     "recovered": "recovered",
@@ -43,6 +43,14 @@ MOVES: Mapping[MoveKind, str] = {
     "left open": "was left open at the end of the game",
 }
 """Words for the recovery moves."""
+
+BY: Mapping[MoveKind, str] = {
+    "expert called": "{by} saw whom to call",
+    "still there": "{by} wanted to clear it, but it is still there: it must be mended first",
+    "taught": "{by} said what to do",
+    "accepted": "{by} said that this is all right",
+}
+"""Words for the moves whose sentence names who made them otherwise than at its end."""
 
 RECOVERY_WORDS = {
     "expert": "halt, and ask an expert",
@@ -59,8 +67,10 @@ def move_words(move: RecoveryEvent) -> str:
     if move.kind == "escalated":
         tried = words if move.attempt else "nobody was there for that"
         return f"{tried}: now {RECOVERY_WORDS[move.to]}"
+    if move.by and move.kind in BY:
+        return BY[move.kind].format(by=move.by)
     if move.attempt > 1:
         words = f"{words}, for the {ordinal(move.attempt)} time"
     if move.by:
-        words = f"{words}, by {move.by}"
+        words = f"{words} by {move.by}"
     return words

@@ -52,7 +52,7 @@ _DOING = {
     "halted": "Tangy stands still",
     "acknowledged": "",  # shows the move before it
     "kept": "another fault comes first",
-    "expert called": "staff were shown whom to call",
+    "expert called": "staff saw whom to call",
     "still there": "it is still there",
     "given up": "the game was given up",
     "left open": "left open at the end of the game",

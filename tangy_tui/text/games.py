@@ -26,7 +26,7 @@ from tangy_tui.text.decisions import HOW_SURE, why_words
 from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
-from tangy_tui.text.numbers import counted, of_times, often
+from tangy_tui.text.numbers import counted, listed, of_times, often
 from tangy_tui.text.situations import Name, kept_words, once_words
 from tangy_tui.text.steps import step_sentence, unfinished_words
 
@@ -141,12 +141,16 @@ def paused_lines(count: int, seconds: float) -> list[str]:
     return [f"It waited for late data {often(count)}, for {seconds:.1f} s in all."] if count else []
 
 
-NEVER_ASKED = "Tangy has asked for nothing yet, so it does not know what works."
+NEVER_ASKED = "Tangy does not know yet what works with {people}: it has asked them for nothing."
+NOBODY_ASKED = "Tangy has not asked anybody for anything yet, so it does not know what works."
 
 
 def belief_lines(supervision: Supervision, name: Name) -> list[str]:
-    """Format each person's posteriors as a line; none if Tangy asks people for nothing."""
-    lines: list[str] = []
+    """Format each person's posteriors as a line, and name the people whom Tangy has not asked.
+
+    No lines if the activity asks people for nothing.
+    """
+    lines, never = list[str](), list[str]()
     behaviours = supervision.world.activity.behaviours.values()
     if not any(behaviour.persuades for behaviour in behaviours):
         return lines
@@ -158,7 +162,14 @@ def belief_lines(supervision: Supervision, name: Name) -> list[str]:
             for strategy, belief in profile.items()
             if belief.trials
         ]
-        lines.append(f"{name(person)}: {', '.join(parts) or NEVER_ASKED}")
+        if parts:
+            lines.append(f"{name(person)}: {', '.join(parts)}")
+        else:
+            never.append(name(person))
+    if never and not lines:
+        return [NOBODY_ASKED]
+    if never:
+        lines.append(NEVER_ASKED.format(people=listed(never)))
     return lines
 
 

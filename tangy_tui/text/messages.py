@@ -11,7 +11,6 @@ from tangy_tui.text.faults import fault_lines
 TITLE = "The last messages"
 NONE_YET = "Tangy has not told you anything yet."
 KEYS = "up down more   esc closes"
-ABOVE = "Everything that Tangy told you is in the lines above: scroll up to read it again."
 HELP = (
     "What Tangy told you since the program began, the newest message first, with the time of day. "
     "If you went on with a game that was interrupted, what its log has from before is below. "

@@ -85,7 +85,7 @@ def did_words(noted: Noted, name: Name) -> str:
         case "called again":
             return f"had the last number called again{f': {detail}' if detail else ''}"
         case "asked for":
-            return f"told Tangy that {person} asks for help"
+            return f"asked Tangy to go to {person}"
         case "told":
             return f"told Tangy about {person or 'the group'}: {detail}"
         case "pace":
@@ -156,7 +156,7 @@ def action_words(noted: Noted, name: Name) -> str:
         case "called again":
             return f"the last number was called again{f': {detail}' if detail else ''}"
         case "asked for":
-            return f"Tangy was told that {person} asks for help"
+            return f"Tangy was asked to go to {person}"
         case "told":
             return f"Tangy was told about {person or 'the group'}: {detail}"
         case "heard":

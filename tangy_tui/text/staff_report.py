@@ -43,7 +43,7 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 
 ONE_ROUND = timedelta(minutes=2)
 """Cards that staff have checked in vain one after the other, in this time, share a row."""
-SHOWN_EXPERT = "was shown whom to call"
+SHOWN_EXPERT = "saw whom to call"
 """For "expert called", if Tangy called nobody itself."""
 
 

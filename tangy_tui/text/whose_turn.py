@@ -180,6 +180,8 @@ def _because(moment: GameMoment, person: PersonNow, name: Name) -> str:
         return f", because nobody asks and {who} has had no visit for long"
     others = [one for one in moment.people if one.turn and one.id != person.id]
     longest = all((one.waits or 0) <= (person.waits or 0) for one in others)
+    if not others and person.id in moment.by_staff:
+        return f", because you asked for {who}"
     if not others:
         return f", because {who} asked for help"
     return f", because {who} {'has waited longest' if longest else 'comes first'}"

@@ -218,10 +218,10 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
 
     pace = f"set the pace to a call every {planned.world.pace:g} s"
     assert [what for _, _, what in staff_rows([replay], name)] == [
-        pace, "told Tangy that Rosa asks for help"
+        pace, "asked Tangy to go to Rosa"
     ]  # fmt: skip
     (told,) = moment_lines(replay.moments[-1], True, None, name)
-    assert told.casefold().endswith(f"{planned.control.by} told tangy that rosa asks for help.")
+    assert told.casefold().endswith(f"{planned.control.by} asked tangy to go to rosa.")
 
 
 def test_staff_read_what_the_group_hears_about_a_claim(

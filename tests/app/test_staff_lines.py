@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from pathlib import Path
 from typing import Any
@@ -87,6 +88,13 @@ def test_a_game_plays_to_its_end_after_the_last_line(workspace: Workspace) -> No
     written, ended = told(workspace)
     assert ended and NO_MORE in written
     assert any("The game is over" in line for line in written)
+
+
+def test_the_last_messages_are_told_again_with_their_times(workspace: Workspace) -> None:
+    written, _ = told(workspace, "pause", "messages", "end")
+    at = [line for line in written if re.fullmatch(r"\d\d:\d\d:\d\d Paused: .*", line)]
+    assert at and at[0][9:] in written
+    assert not any("lines above" in line for line in written)
 
 
 def test_the_last_line_that_ends_a_game_does_not_say_that_the_game_goes_on(

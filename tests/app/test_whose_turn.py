@@ -133,6 +133,8 @@ def test_staff_who_asked_for_somebody_are_not_told_that_the_person_did(robot: Ro
     assert about(robot, "user3")[0] == "Berta waits for Tangy."
     robot.link.time += 70.0
     assert about(robot, "user3")[0] == "Berta has waited for 1 min."
+    robot.world.observe()
+    assert now(robot)[0] == "Tangy goes to Berta next, because you asked for Berta."
 
 
 def test_a_claim_comes_first(robot: Robot) -> None:

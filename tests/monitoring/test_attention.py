@@ -221,7 +221,7 @@ def test_what_tangy_hears_is_not_told_as_done_by_staff() -> None:
     told = Noted("told", "Ada", person="user1", detail="honey")
     assert action_line(told, rosa).startswith("Ada told Tangy about Rosa")
     asks = Noted("asked for", "Ada", person="user1")
-    assert action_line(asks, rosa) == "Ada told Tangy that Rosa asks for help."
+    assert action_line(asks, rosa) == "Ada asked Tangy to go to Rosa."
 
 
 @pytest.mark.parametrize("did", get_args(StaffActionKind))

@@ -9,6 +9,7 @@ from typing import cast
 import pytest
 
 from tangy_profiles.activity import load_activity
+from tangy_profiles.beliefs import Beta
 from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.memory import PersonModels
@@ -21,7 +22,7 @@ from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.activities import stage_words
 from tangy_tui.text.endings import all_endings, ending_sentence
-from tangy_tui.text.games import belief_lines
+from tangy_tui.text.games import NEVER_ASKED, NOBODY_ASKED, belief_lines
 from tangy_tui.text.report import (
     attention_lines,
     care_lines,
@@ -135,13 +136,18 @@ def test_every_wait_that_is_told_is_one_of_the_log(waits: list[float], words: st
 
 
 def test_what_works_is_told_only_where_tangy_asks_people_for_something() -> None:
-    def played(activity: str) -> Supervision:
+    def played(activity: str, beliefs: dict[str, dict[str, Beta]]) -> Supervision:
         world = SimpleNamespace(activity=load_activity(activity))
-        persuasion = SimpleNamespace(beliefs={"Ann": {}})
+        persuasion = SimpleNamespace(beliefs=beliefs)
         return cast(Supervision, SimpleNamespace(world=world, persuasion=persuasion))
 
-    assert belief_lines(played("trivia"), str) == []
-    assert len(belief_lines(played("bingo"), str)) == 1
+    assert belief_lines(played("trivia", {"Ann": {}}), str) == []
+    assert belief_lines(played("bingo", {"Ann": {}, "Bo": {}}), str) == [NOBODY_ASKED]
+    ann, others = belief_lines(
+        played("bingo", {"Bo": {}, "Ann": {"praise": Beta(2, 1)}, "Cy": {}}), str
+    )
+    assert ann.startswith("Ann: praise worked")
+    assert others == NEVER_ASKED.format(people="Bo and Cy")
 
 
 def test_the_page_tells_each_method_and_names_stages_in_words(

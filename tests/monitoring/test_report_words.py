@@ -9,7 +9,7 @@ from typing import cast
 import pytest
 
 from tangy_profiles.activity import load_activity
-from tangy_profiles.game_records import CallMade, GameChange, RecoveryEvent
+from tangy_profiles.game_records import CallMade, GameChange, MoveKind, RecoveryEvent
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.monitoring.attention import Attention
 from tangy_tui.monitoring.fault import Fault, Moved
@@ -18,6 +18,7 @@ from tangy_tui.monitoring.people_progress import Progress
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
 from tangy_tui.pages.staff_parts import FEW_ROWS, staff_part
+from tangy_tui.text.fault_moves import MOVES, move_words
 from tangy_tui.text.house import GAME_COLUMNS, game_rows, strategy_rows
 from tangy_tui.text.report import changes_lines
 from tangy_tui.text.results import response_line
@@ -76,7 +77,7 @@ def test_the_expert_counts_as_called_only_if_tangy_called() -> None:
     shown, called = GameReplay(ONE, [seen]), GameReplay(ONE, [seen, moment(1, call)])
     whats = [what for _, _, what in staff_rows([shown, called], str)]
     assert whats == [
-        "was shown whom to call: Emergency stop pressed",
+        "saw whom to call: Emergency stop pressed",
         "called the expert: Emergency stop pressed",
     ]
 
@@ -110,3 +111,15 @@ def test_a_long_list_of_what_staff_did_is_printed_in_two_columns(
     noted = [moment(n, Noted("paused", "Nina")) for n in range(count)]
     session = cast(Session, SimpleNamespace(replays=[GameReplay(ONE, noted)], name=str))
     assert ('class="staff long"' in "".join(staff_part(session))) is columns
+
+
+def test_a_move_of_staff_is_a_sentence_about_them() -> None:
+    def words(kind: MoveKind, by: str = "staff") -> str:
+        return move_words(RecoveryEvent(kind, 3.0, by=by))
+
+    assert words("expert called") == "staff saw whom to call"
+    assert words("expert called", "Ada") == "Ada saw whom to call"
+    assert words("still there").startswith("staff wanted to clear it, but it is still there")
+    assert words("cleared", "Ada") == "was cleared by Ada"
+    assert words("taught") == "staff said what to do"
+    assert words("still there", "") == MOVES["still there"]

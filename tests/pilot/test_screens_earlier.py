@@ -15,6 +15,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.earlier import read_earlier
+from tangy_tui.text.messages import NONE_YET
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
@@ -104,6 +105,8 @@ def test_the_lines_tell_what_was_before_a_crash(interrupted: Workspace, learnt: 
     messages, faults = inquiries.lines("messages"), inquiries.lines("faults")
     assert messages is not None and faults is not None
     assert messages[0].startswith("Before the interruption (")
-    assert "paused the game." in messages[-2] and "lines above" in messages[-1]
+    assert "paused the game." in messages[-1]
+    fresh = Inquiries(control, interrupted.name, None, str)
+    assert fresh.lines("messages") == [NONE_YET]
     assert faults[0] == messages[0] and "The voice is silent" in faults[1]
     assert faults[-1].startswith("No faults since")

@@ -175,8 +175,8 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
         for words in (
             "0:31 noticed",
             "0:31 halted",
-            "0:31 staff were shown whom to call, by ann",
-            "5:31 was cleared, by ann",
+            "0:31 ann saw whom to call",
+            "5:31 was cleared by ann",
             "emergency stop, pressed: yes",
             "expected: no",
             "What should I do?",
