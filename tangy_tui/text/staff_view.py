@@ -27,6 +27,7 @@ PAUSED = "Paused."
 TIME_FIRST = ", once everybody has had time"
 """Why Tangy does not call the next number yet."""
 TANGY_WAITS = f"Tangy {WAITS_FOR_YOU}."
+YOU_SAY = "Tangy finishes this first. Then you say what it does."
 CLAIM_FIRST = "first because of the claim"
 """Why Tangy goes to a person before those who have waited longer."""
 FIRST_BY_CLAIM = "first: a claim"
@@ -146,6 +147,11 @@ def next_words(
         because = TIME_FIRST
     calls = f" {calls_first_words(calls_first, then)}" if calls_first else ""
     return f"Next: {step}{because}.{calls}"
+
+
+def you_say_words(typed: str) -> str:
+    """Tell that staff say what Tangy does next, or what they have typed already."""
+    return f"Tangy finishes this first. Then you say: {typed}" if typed else YOU_SAY
 
 
 def goes_by_claim_words(name: str) -> str:

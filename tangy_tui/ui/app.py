@@ -26,6 +26,7 @@ from tangy_tui.app.terminal_session import QuestionKey, terminal_session
 from tangy_tui.text import program as text
 from tangy_tui.ui.blank_screen import BlankScreen
 from tangy_tui.ui.clean_output import CleanOutput
+from tangy_tui.ui.early_keys import EarlyKeys
 from tangy_tui.ui.key_reading import KeyReader, prepare_stop
 from tangy_tui.ui.keys import DEFAULT, bind
 from tangy_tui.ui.message_history import MessageHistoryApp
@@ -128,7 +129,8 @@ class TangyApp(MessageHistoryApp):
         self._pictures = pictures
         self.leaving = False
         """Whether the program is ending, which is then why things stop."""
-        self._reader = KeyReader(self)
+        self.early_keys = EarlyKeys(self)
+        self._reader = KeyReader(self, self.early_keys)
         self.frames = HeldWrites(lambda: None if self.is_headless else self._driver)
         self._shown = ScreenDiff()
         self._measured = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from typing import Any, ClassVar, TypeVar
 
 from textual import events
@@ -24,6 +25,7 @@ LOW_OR_TALL = [(0, "-low"), (22, "-tall")]
 """The classes of a dialog from a number of lines on."""
 
 ResultT = TypeVar("ResultT")
+AnswerT = TypeVar("AnswerT")
 
 
 class Cover(InkedWidget, can_focus=True):
@@ -98,10 +100,22 @@ class TangyScreen(Screen[ResultT]):
     """
     HELP: ClassVar[str] = ""
     ALLOW_IN_MAXIMIZED_VIEW = ".-textual-system,StatusLine,#keys,#command"
-    LETTERS_FOLLOW: ClassVar[tuple[str, ...]] = ()
-    """The actions that push a dialog for which a person may type letters without waiting for it.
+    LETTERS_FOLLOW: ClassVar[Mapping[str, str]] = {}
+    """The actions of keys (by the key's id) that open something to type in, or to filter.
 
-    They are carried out before the next key is read, so that it goes to the dialog."""
+    They are carried out before the next key is read, so that it goes there.
+    """
+
+    def ask(self, dialog: Dialog[AnswerT]) -> asyncio.Future[AnswerT]:
+        """Push a dialog at once, and return its answer, for a worker to await."""
+        answered: asyncio.Future[AnswerT] = asyncio.get_running_loop().create_future()
+
+        def take(answer: Any) -> None:
+            if not answered.done():  # its worker may have been cancelled
+                answered.set_result(answer)
+
+        self.app.push_screen(dialog, take)
+        return answered
 
     def close(self, result: ResultT) -> None:
         """Dismiss the screen with a result, unless it is covered or dismissed already."""
@@ -180,6 +194,11 @@ class Dialog(ModalScreen[ResultT]):
         self.app.clear_notifications()
         if hasattr(self.below, "covered"):
             self.screen_layout_refresh_signal.subscribe(self, self._tell_below)
+
+    def on_descendant_focus(self) -> None:
+        """Take the keys that were typed for the dialog before it was there."""
+        if (early := getattr(self.app, "early_keys", None)) is not None:
+            self.app.call_later(early.give)
 
     def on_stop(self, message: Stop) -> None:
         """Answer with `no` on STOP."""

@@ -9,6 +9,7 @@ from textual.app import App
 from textual.widgets import Input
 
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.early_keys import EarlyKeys
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.pasted_text import pasted_text
 from tangy_tui.ui.type_ahead_guard import clock_of
@@ -18,17 +19,21 @@ from tangy_tui.ui.typed_stop import Taken, TypedStop
 class KeyReader:
     """Handles input that is no shortcut: a typed or pasted stop, letters of a line, other paste."""
 
-    def __init__(self, app: App[None]) -> None:
+    def __init__(self, app: App[None], early: EarlyKeys) -> None:
         self._app = app
+        self._early = early
         self._typed_stop = TypedStop()
 
     def takes(self, event: events.Event) -> bool:
         """Handle an event, unless it is for the widgets; return whether it is handled."""
-        if not isinstance(event, events.Key | events.Paste):
-            return False
+        if not isinstance(event, events.Key | events.Paste) or event.is_forwarded:
+            return False  # a key that no widget used comes back here
+        if self._early.keep(event):
+            return True
         focused = self._app.focused
         writes = isinstance(focused, Input) or getattr(focused, "writes", False)
-        if (not writes or isinstance(event, events.Paste)) and self._says_stop(event):
+        outside = not writes or isinstance(event, events.Paste) or self._typed_stop.begun
+        if outside and self._says_stop(event):
             return True
         if not writes and self._is_typed(event):
             return True
@@ -56,12 +61,14 @@ class KeyReader:
     def _opens_dialog(self, event: events.Key) -> bool:
         """Open a dialog before the next key is read, which may be a letter for it."""
         top = self._app.screen_stack[-1] if self._app.screen_stack else None
-        action = keymap_of(self._app).action(event.key)
-        if not isinstance(top, TangyScreen) or action not in top.LETTERS_FOLLOW:
+        if not isinstance(top, TangyScreen) or pasted_text(event) or not top.is_mounted:
             return False
-        if pasted_text(event) or not top.is_mounted or not top.check_action(action, ()):
+        action = top.LETTERS_FOLLOW.get(keymap_of(self._app).action(event.key) or "")
+        if action is None or not top.check_action(action, ()):
             return False
         getattr(top, f"action_{action}")()
+        if (opened := self._app.screen) is not top:
+            self._early.wait_for(opened)
         return True
 
     def _is_typed(self, event: events.Key | events.Paste) -> bool:

@@ -26,6 +26,14 @@ class TypedStop:
         self._last = float("-inf")
         self._stopped = False
 
+    @property
+    def begun(self) -> bool:
+        """Whether the next letter may complete the word, or belong to the sentence after it.
+
+        A letter of the word may have opened a line, into which the others go.
+        """
+        return self._stopped or any(self._letters.endswith(WORD[:n]) for n in range(1, len(WORD)))
+
     def take(self, letter: str | None, now: float) -> Taken:
         """Handle a key pressed at a time in s; None: it is no letter, space or return."""
         since, self._last = now - self._last, now

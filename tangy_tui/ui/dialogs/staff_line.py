@@ -87,9 +87,9 @@ class NextDialog(LineDialog[str]):
     ]
     HELP = text.NEXT_WORDS
 
-    def __init__(self) -> None:
-        """Create the dialog."""
-        super().__init__(text.NEXT, text.NEXT_WORDS, text.NEXT_KEYS)
+    def __init__(self, begun: str = "") -> None:
+        """Create the dialog; `begun` are the words that wait already."""
+        super().__init__(text.NEXT, text.NEXT_WORDS, text.NEXT_KEYS, begun=begun, selected=True)
 
     def on_stop(self, message: Stop) -> None:
         """Close the dialog when the robot is stopped; Tangy still asks afterwards."""

@@ -66,6 +66,7 @@ class LiveScreen(LiveStaff):
     mode = "live"
     FIRST = STAFF
     HELP = live_keys.HELP
+    LETTERS_FOLLOW = live_keys.LETTERS_FOLLOW
     BINDINGS: ClassVar[list[BindingType]] = live_keys.BINDINGS
 
     def __init__(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
 from textual.app import App
@@ -69,22 +69,29 @@ class LiveCards:
             self._write(f"{question} {TELL_HINT}", "warn")
         self._asks = asks
 
+    def people(self) -> ChooseDialog:
+        """Return the question which person's card staff want to tell of."""
+        people = []
+        for person in self._workspace.people:
+            known = self._cards.dealt.card_of(person.id)
+            note = UNKNOWN if known is None else KNOWN.format(known)
+            people.append(Option(person.id, person.name, note))
+        return ChooseDialog(WHOSE, people)
+
     async def say_whose(
-        self, app: App[Any], control: GameController, do: Callable[[GameCommand], object]
+        self,
+        app: App[Any],
+        chosen: Awaitable[str | None],
+        control: GameController,
+        do: Callable[[GameCommand], object],
     ) -> None:
-        """Ask staff who has which card, and carry out their answer.
+        """Ask staff which card a chosen person has, and carry out their answer.
 
         The card is one of those last in sight, one whose number they type, or Tangy learns the
         person's card again.
         """
         dealt, name = self._cards.dealt, self._workspace.name
-        people = []
-        for person in self._workspace.people:
-            known = dealt.card_of(person.id)
-            note = UNKNOWN if known is None else KNOWN.format(known)
-            people.append(Option(person.id, person.name, note))
-        whom = await app.push_screen_wait(ChooseDialog(WHOSE, people))
-        if whom is None:
+        if (whom := await chosen) is None:
             return
         options = [
             *(

@@ -28,6 +28,11 @@ HELP = (
     "messages again."
 )
 
+LETTERS_FOLLOW = {
+    **play_keys.LETTERS_FOLLOW,
+    **{id: id for id in ("take_over", "ask_for", "whose_card", "tell")},
+}
+
 BINDINGS: list[BindingType] = [
     *bind("autonomy"),
     *bind("take_over"),

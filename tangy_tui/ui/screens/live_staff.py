@@ -6,7 +6,8 @@ Behaviours take time, so commands that wait for their turn are carried out in a 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from typing import TypeVar
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
@@ -43,6 +44,7 @@ from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.dialogs.staff_line import NextDialog, TellDialog
 from tangy_tui.ui.screens.live_cards import LiveCards
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.play_view import ViewSource
 from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.room_view import RoomView
 
@@ -60,6 +62,8 @@ class LiveStaff(PlayScreen):
     working = 0
     """The number of running and queued commands."""
     _cards: LiveCards
+    _typed_next = ""
+    """What staff have typed that Tangy does next, until it asks."""
 
     @property
     def at_rest(self) -> bool:
@@ -131,15 +135,17 @@ class LiveStaff(PlayScreen):
 
     def action_take_over(self) -> None:
         """Hand control to staff as soon as the current behaviour ends; they can type at once."""
-        if not self._supervision.over:
+        if (asking := self._asking) is not None and asking.wanted:
+            self.action_type()
+        elif not self._supervision.over:
             self._do(TakeOver())
-            if self.control.taking_over and self.control.stepping:
-                self.run_worker(self._say_next(), name="next", group="type", exclusive=True)
+            if self.control.taking_over:
+                dialog = NextDialog(self._typed_next)
+                said = self._say_next(dialog, self.ask(dialog))
+                self.run_worker(said, name="next", group="next", exclusive=True)
 
-    async def _say_next(self) -> None:
+    async def _say_next(self, dialog: NextDialog, answered: asyncio.Future[str | None]) -> None:
         """Let staff type what Tangy does next, and answer its question with that."""
-        dialog, answered = NextDialog(), asyncio.get_running_loop().create_future()
-        self.app.push_screen(dialog, answered.set_result)
         closed = False
         while not answered.done():
             if not self.control.asks_next:  # the game is over, or Tangy goes on
@@ -148,19 +154,29 @@ class LiveStaff(PlayScreen):
             elif self._asks_openly is not None and not dialog.typed:
                 dialog.answer("")  # the line of the question takes the keys
             await asyncio.sleep(LOOK_AGAIN_SECONDS)
-        said: str | None = answered.result()
+        said = answered.result()
         if said is None:
+            self._typed_next = ""
             self._let_tangy_go_on()
+            return
+        self._typed_next = said
+        self.show_staff()
         while said and self.control.asks_next:
             if (asking := self._asks_openly) is not None:
+                self._typed_next = ""
                 asking.take(said)
                 return
             await asyncio.sleep(LOOK_AGAIN_SECONDS)
+        self._typed_next = ""
         over = self._supervision.over
         if said:
             self._tell_now(next_dropped(said, over=over), "warn")
         elif closed and over:
             self._tell_now(NEXT_OVER, "warn")
+
+    def _source(self) -> ViewSource:
+        """Return what the view for staff is shown with."""
+        return replace(super()._source(), typed=self._typed_next)
 
     @property
     def _asks_openly(self) -> AskingPanel | None:
@@ -204,35 +220,35 @@ class LiveStaff(PlayScreen):
     def action_ask_for(self) -> None:
         """Ask for help on behalf of a person."""
         if not self._supervision.over:
-            self.run_worker(self._ask_for(), name="ask", group="ask")
+            away = self.control.plan.away
+            here = [person for person in self._workspace.people if person.id not in away]
+            options = [Option(person.id, person.name) for person in here]
+            chosen = self.ask(ChooseDialog(WHO_NEEDS_HELP, options))
+            self.run_worker(self._ask_for(chosen), name="ask", group="ask")
 
-    async def _ask_for(self) -> None:
-        away = self.control.plan.away
-        here = [person for person in self._workspace.people if person.id not in away]
-        options = [Option(person.id, person.name) for person in here]
-        person = await self.app.push_screen_wait(ChooseDialog(WHO_NEEDS_HELP, options))
-        if person is not None:
+    async def _ask_for(self, chosen: Awaitable[str | None]) -> None:
+        if (person := await chosen) is not None:
             self._do(AskFor(person))
 
     def action_whose_card(self) -> None:
         """Ask staff who owns a card."""
         if not self._supervision.over:
-            say = self._cards.say_whose(self.app, self.control, self.do_sure)
+            whom = self.ask(self._cards.people())
+            say = self._cards.say_whose(self.app, whom, self.control, self.do_sure)
             self.run_worker(say, name="card", group="ask")
 
     def action_tell(self) -> None:
         """Report what a person answers or does."""
         if not self._supervision.over:
-            self.run_worker(self._tell_of(), name="tell", group="ask")
+            self.ask(self._telling())
 
-    async def _tell_of(self) -> None:
+    def _telling(self) -> TellDialog:
         world, workspace = self.world, self._workspace
         if isinstance(world, DeclaredLiveWorld):
             person, words = about(world.ahead), tuple(sayable(world.ahead))
         else:
             person, words = self.control.robot.asks_about
-        dialog = TellDialog(self._report, workspace.name(person) if person else "", words)
-        await self.app.push_screen_wait(dialog)
+        return TellDialog(self._report, workspace.name(person) if person else "", words)
 
     def _report(self, line: str) -> None:
         """Tell Tangy what staff report about a person; raises TangyError if it is refused."""

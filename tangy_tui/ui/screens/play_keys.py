@@ -49,6 +49,9 @@ HELP = (
 PANELS = ("room", "transcript", "policy", "posteriors", "log", "faults")
 """The panels of the number keys, from 1."""
 
+LETTERS_FOLLOW = {"inject": "inject", "claim": "claim", "presence": "presence", "command": "type"}
+"""The actions of keys that open something to type in, or to filter."""
+
 BINDINGS: list[BindingType] = [
     *bind("pause"),
     *bind("talk"),

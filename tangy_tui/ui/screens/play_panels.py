@@ -47,6 +47,7 @@ from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.message_history import remember, remember_before
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
+from tangy_tui.ui.screens import play_keys
 from tangy_tui.ui.screens.play_keys import keys
 from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view
 from tangy_tui.ui.screens.question_panel import AskingPanel
@@ -74,7 +75,7 @@ class PlayPanels(TangyScreen[Tally]):
 
     mode = "play"
     """The name of the screen on the status line."""
-    LETTERS_FOLLOW = ("inject",)
+    LETTERS_FOLLOW = play_keys.LETTERS_FOLLOW
     FIRST = CHOOSABLE[0]
     """The panel that is shown first."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 
@@ -233,18 +233,17 @@ class PlayStaff(PlayPanels):
     def action_type(self) -> None:
         """Let staff type a command, in the line of an open question if there is one."""
         if lines := self.query("#command-input"):
-            lines.first().focus()
-            return
-        self.run_worker(self._type(""), name="type", group="type", exclusive=True)
+            self.set_focus(lines.first())  # at once: letters may come with the key
+        else:
+            self._ask_command("")
 
     def action_claim(self) -> None:
         """Let staff type the number of a card to check, or a name."""
         word = self._workspace.activity.rules.claim or CHECK
-        claim = CLAIM, claim_words(word)
-        self.run_worker(self._type(f"{word} ", claim), name="type", group="type", exclusive=True)
+        self._ask_command(f"{word} ", (CLAIM, claim_words(word)))
 
-    async def _type(self, begun: str, asked: tuple[str, str] | None = None) -> None:
-        """Let staff type a command; `asked` is the question, and its explanation."""
+    def _ask_command(self, begun: str, asked: tuple[str, str] | None = None) -> None:
+        """Ask staff for a command; `asked` is the question, and its explanation."""
         activity = self._workspace.activity
         names = [*self._workspace.names.values()]
         read = command_reader(activity, self.id_of)
@@ -254,11 +253,14 @@ class PlayStaff(PlayPanels):
             *(asked or (TITLE, self._told(example_words(activity.rules)))),
             lambda typed: nearest_commands(typed, names, activity.rules),
         )
-        command = await self.app.push_screen_wait(dialog)
+        typed = self.ask(dialog)
+        self.run_worker(self._take_typed(typed), name="type", group="type", exclusive=True)
+
+    async def _take_typed(self, typed: Awaitable[GameCommand | Perform | AsksAbout | None]) -> None:
+        command = await typed
         if isinstance(command, Perform):
             await perform(self, command.action, command.on)
-            return
-        if isinstance(command, StopRobot):
+        elif isinstance(command, StopRobot):
             await self.run_action("app.stop")
         elif isinstance(command, AsksAbout):
             self.answer_about(command)
@@ -267,9 +269,6 @@ class PlayStaff(PlayPanels):
 
     def action_presence(self) -> None:
         """Ask staff who has come or left."""
-        self.run_worker(self._presence(), name="presence", group="type", exclusive=True)
-
-    async def _presence(self) -> None:
         away = self.control.plan.away
         options = [
             Option(person.id, person.name, IS_AWAY if person.id in away else IS_HERE)
@@ -277,7 +276,11 @@ class PlayStaff(PlayPanels):
         ]
         if self.control.admission is not None:
             options.append(Option(NEW, *SOMEBODY_NEW))
-        person = await self.app.push_screen_wait(ChooseDialog(WHO_IS_HERE, options))
+        who = self._take_presence(self.ask(ChooseDialog(WHO_IS_HERE, options)))
+        self.run_worker(who, name="presence", group="type", exclusive=True)
+
+    async def _take_presence(self, chosen: Awaitable[str | None]) -> None:
+        away, person = self.control.plan.away, await chosen
         if person == NEW and (admission := self.control.admission) is not None:
             await self._let_join(admission)
         elif person not in (None, NEW):

@@ -37,6 +37,8 @@ class ViewSource:
     said: str = ""
     report: str = ""
     """How to get the report of a game that is over."""
+    typed: str = ""
+    """What staff have typed that Tangy does next, until it asks."""
 
 
 def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewSource) -> None:
@@ -78,6 +80,8 @@ def next_line(shown: ViewSource) -> str:
         return f"{stopped_words(control.stopped_by)}."
     if control.phase == "asking":
         return text.TANGY_WAITS
+    if control.taking_over:
+        return text.you_say_words(shown.typed)
     if control.welcomes:
         return text.welcomes_words(control.welcomes)
     planned = as_planned(world)

@@ -122,7 +122,8 @@ class AskingPanel(Vertical):
         self._by_voice = False  # the present command was spoken
         self._hearing = hearing_of(self.app)
         self._before = clean(before)
-        self._wanted = wanted(question)
+        self.wanted = wanted(question)
+        """Whether staff requested the question."""
         self.set_class(bool(before), "-says")
         self.border_title = "Tangy asks"
 
@@ -143,7 +144,7 @@ class AskingPanel(Vertical):
         yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
             sayable=lambda: self._answers.sayable,
-            placeholder=text.NEXT_LINE if self._wanted else text.answer_line(other),
+            placeholder=text.NEXT_LINE if self.wanted else text.answer_line(other),
             resting=self._keys(going=True),
             closed=True,
             id="command",
@@ -169,7 +170,7 @@ class AskingPanel(Vertical):
         return self._hearing is not None and self._hearing.by_key
 
     def _keys(self, *, going: bool) -> str:
-        own = OWN_KEYS if self._wanted else KEYS
+        own = OWN_KEYS if self.wanted else KEYS
         ids = (*(("talk",) if self._by_key else ()), *(ACCEPTING_KEYS if self._acceptable else own))
         if not going:
             ids = tuple("pause:go on" if id == "pause" else id for id in ids)
@@ -216,7 +217,7 @@ class AskingPanel(Vertical):
 
     def ask_to_give_up(self) -> None:
         """Confirm giving up the game; or let Tangy continue, if staff requested the question."""
-        if self._wanted:
+        if self.wanted:
             self.withdraw()
         elif self._dialog is None:
             self.screen.run_worker(self._confirm(), name="give up", group="give up")
@@ -300,7 +301,7 @@ class AskingPanel(Vertical):
                 self.ask_to_give_up()
             case Accept():
                 self.accept()
-            case GiveBack() if self._wanted:
+            case GiveBack() if self.wanted:
                 self.withdraw()
             case _:
                 self.post_message(self.Commanded(command))
