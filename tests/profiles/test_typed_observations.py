@@ -178,6 +178,29 @@ def test_an_answer_counts_if_the_game_waits_for_those_of_all(tmp_path: Path) -> 
     assert late is not None and not late.counts
 
 
+NO_STAGE_READS = (
+    ('"any guess is right"], about = "whose guess is right"', '"points is >=1"]'),
+    ("points = {", "points = { bands = [1],"),
+    ('"any guess is wrong"], about = "whose guess is wrong"', '"clock is >=25"]'),
+    ("{name} was the first to be right", "somebody has points"),
+    ("{name} was wrong", "nobody said anything"),
+)
+
+
+@pytest.mark.parametrize("by_a_test", [True, False])
+def test_an_answer_that_no_stage_reads_counts_at_any_time(tmp_path: Path, by_a_test: bool) -> None:
+    changes = [("points is", "any points is"), ("[people]", "[people]")]
+    if by_a_test:
+        test = 'solved = { kind = "test", when = ["any guess is right"] }\n[people]'
+        changes = [("points is >=1", "solved is yes"), ("[people]", test)]
+    game = _buzz(tmp_path, *NO_STAGE_READS, *changes)
+    early = told_now(game, "user1", "right", 1.0)
+    assert early is not None and early.counts is not by_a_test
+    game.execute("ask all", None)
+    told = told_now(game, "user1", "right", 1.0)
+    assert told is not None and told.counts
+
+
 @pytest.mark.parametrize(
     ("said", "value"), [("False", "right"), ("wrong", "wrong"), ("true", "wrong")]
 )

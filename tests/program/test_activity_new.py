@@ -13,7 +13,7 @@ from subprocess import CompletedProcess
 import pytest
 
 from tangy_tui.app.activity_bases import choice_questions, examples
-from tangy_tui.app.authors_words import name_of
+from tangy_tui.app.authors_words import kept, name_of
 from tangy_tui.app.new_activity import KINDS, Draft, Problem
 from tangy_tui.text.activity_questions import (
     ENDS,
@@ -215,6 +215,7 @@ def test_an_existing_file_is_not_overwritten(tangy: Tangy, tmp_path: Path) -> No
     [
         ("Chair exercises: Rücken & arms", "chair-exercises-ruecken-arms"),
         ("Größe ÖL", "groesse-oel"), ("Café Señora", "cafe-senora"), ("u\u0308ben", "ueben"),
+        ("Zoé's  quiz", "zoe-s-quiz"), ("\u82b1\u5b50 2", "2"), ("\u82b1\u5b50", ""),
     ],
 )  # fmt: skip
 def test_a_file_name_has_plain_letters(title: str, name: str) -> None:
@@ -378,3 +379,8 @@ def test_a_wrong_answer_that_was_typed_twice_is_offered_once() -> None:
     row = {"ask": "What is red?", "right": "rose", "wrong": "sky, sky, sea;, sea;"}
     (question,) = choice_questions([row])
     assert sorted(question.options) == ["rose", "sea;", "sky"]
+
+
+@pytest.mark.parametrize(("quotes", "line"), [(True, 'a "b" c'), (False, "a b c")])
+def test_a_line_loses_what_means_something_in_the_files(quotes: bool, line: str) -> None:
+    assert kept('  a \\"b" {c}|', quotes=quotes) == line

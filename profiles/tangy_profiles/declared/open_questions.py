@@ -15,7 +15,7 @@ def counts_now(game: DeclaredGame, fact: Fact, who: str | None) -> bool:
     """
     if not fact.checks or not _is_read(game, fact):
         return True
-    if game.declaration.items.columns and game.row < 0:
+    if game.row < 0:  # no item has been asked
         return False
     others = [one for one in game.here if one != who] if fact.per_player else []
     for value in fact.values[1:]:
