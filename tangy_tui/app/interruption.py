@@ -10,6 +10,7 @@ from tangy_profiles.game_records import GameEnding
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.past_game import PastGame, interrupted_game
 from tangy_tui.app.rooms import check_places, find_room
+from tangy_tui.monitoring.earlier import EarlierPart, read_earlier
 
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
@@ -33,6 +34,22 @@ def find_interrupted(workspace: Workspace, world: GameWorld) -> PastGame | None:
         if (one.game, one.what) == (game, "joined"):
             past = past.joined_by(one.person, workspace.activity.unread, one.place)
     return past
+
+
+def earlier_part(
+    workspace: Workspace, past: PastGame | None, *, joined: bool
+) -> EarlierPart | None:
+    """Return what happened before a game was interrupted; None if there is no such game.
+
+    Args:
+        workspace: the workspace of the game.
+        past: the interrupted game.
+        joined: whether it was only interrupted for a new person.
+    """
+    if past is None:
+        return None
+    activity, names = workspace.activity, workspace.names
+    return read_earlier(workspace.store, past, activity, names, joined=joined)
 
 
 def can_join(workspace: Workspace, past: PastGame) -> bool:

@@ -253,13 +253,13 @@ def staff_lines(
         ahead: the lines, if they are being read already.
     """
     from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.interruption import earlier_part
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.console.typed_yes import TypedYes
     from tangy_tui.interaction.feedback import void_last
     from tangy_tui.learning.library import read_library
-    from tangy_tui.monitoring.earlier import read_earlier
     from tangy_tui.text.live_news import news_lines
     from tangy_tui.text.watching import stopped_by_guest
 
@@ -280,10 +280,6 @@ def staff_lines(
     if typed is not None:
         yes.drop_begun, yes.written = typed.drop, typed.ask_terminal
         typed.too_early = lambda: typed.write(TOO_EARLY)
-    earlier = None
-    if past is not None:
-        activity, joined = workspace.activity, before is not None
-        earlier = read_earlier(workspace.store, past, activity, workspace.names, joined=joined)
     control = GameController(supervision, teacher, robot=robot, void=void, past=past)
     workspace.door.attach(control, lambda who: write(stopped_by_guest(who, control.by)))
     return control, StaffLines(
@@ -298,5 +294,5 @@ def staff_lines(
         yes=yes,
         before=before,
         ahead=ahead,
-        earlier=earlier,
+        earlier=earlier_part(workspace, past, joined=before is not None),
     )

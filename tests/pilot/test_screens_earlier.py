@@ -17,6 +17,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.earlier import read_earlier
 from tangy_tui.text.messages import NONE_YET
 from tangy_tui.ui.dialogs.fault import FaultDialog
+from tangy_tui.ui.dialogs.messages import MessagesDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.fault_list import FaultList
@@ -75,6 +76,20 @@ async def test_messages_before_a_crash_can_be_read_in_the_resumed_game(
         assert heading < text.index("paused the game") < text.index("set the pace")
         assert text.index("set the pace") < text.index("The voice is silent. Nobody hears")
         assert "call number" not in text[heading : text.index("Nobody hears")]
+
+
+@pytest.mark.slow
+async def test_the_next_game_does_not_list_messages_before_the_interruption_of_another(
+    interrupted: Workspace, learnt: Policy, run: Run
+) -> None:
+    async with run((120, 40), app=resuming(interrupted, learnt)) as pilot:
+        await until_shown(pilot, lambda: "earlier steps" in pilot.text())
+        game = interrupted.supervision(learnt, 6)
+        await pilot.app.push_screen(PlayScreen(interrupted, game, teacher="ann"))
+        await until_shown(pilot, lambda: game.games == 1)
+        await pilot.press("exclamation_mark")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, MessagesDialog))
+        assert "Before the interruption" not in pilot.text()
 
 
 @pytest.mark.slow

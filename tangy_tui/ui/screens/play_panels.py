@@ -15,9 +15,9 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.present_moment import as_present
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import AsksAbout
+from tangy_tui.app.interruption import earlier_part
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.monitoring.earlier import read_earlier
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.decisions import WHY_NOW
@@ -95,13 +95,12 @@ class PlayPanels(TangyScreen[Tally]):
     def on_mount(self) -> None:
         """Show what the log has of a game before it was interrupted."""
         control, workspace = self.control, self._workspace
-        if (past := control.past) is None:
-            return
-        activity, joined = workspace.activity, control.after_joining
-        part = read_earlier(workspace.store, past, activity, workspace.names, joined=joined)
+        part = earlier_part(workspace, control.past, joined=control.after_joining)
         self._faults.earlier = part
-        if not joined:
-            told = earlier_messages(part, activity, workspace.name)
+        if part is None:  # an interruption of another game is not one of this
+            remember_before(self.app, "", ())
+        elif not part.joined:
+            told = earlier_messages(part, workspace.activity, workspace.name)
             remember_before(self.app, before_words(part.at), told)
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
