@@ -11,11 +11,19 @@ from contextlib import ExitStack
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
+from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.app.confirmations import needed_confirmation
 from tangy_tui.app.game_commands import GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.console.typed_yes import TypedYes
-from tangy_tui.learning.teaching_events import Again, Discard, Ruled, SameWhatever, TeacherCommand
+from tangy_tui.learning.teaching_events import (
+    Again,
+    Discard,
+    Ruled,
+    SameWhatever,
+    TeacherCommand,
+    Undo,
+)
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.confirmations import (
     NOT_DONE,
@@ -145,6 +153,22 @@ class ConfirmingTeacher(TypedConfirmation[TeacherCommand]):
         """Ask about commands for a teaching session."""
         super().__init__(yes, write)
         self._teaching = teaching
+        self._unasked = False  # whether the last line made a rule without a question
+
+    def takes(self, line: str) -> bool:
+        """Return whether a line answers the open question, or one that a script was not asked.
+
+        A script is asked nothing, but may hold the answer that a person would type.
+        """
+        unasked, self._unasked = self._unasked, False
+        other = self._teaching.question is not None or self._teaching.remark is not None
+        return self.open or (unasked and not other and line.casefold() in ANSWERS)
+
+    def answer(self, line: str) -> TeacherCommand | None:
+        """Return the command that a line confirms, or that takes back what was done unasked."""
+        if self.open:
+            return super().answer(line)
+        return None if ANSWERS[line.casefold()] else Undo()
 
     def ask(self, command: TeacherCommand) -> TeacherCommand | None:
         """Return a command that needs no answer; otherwise ask, and return None."""
@@ -160,6 +184,7 @@ class ConfirmingTeacher(TypedConfirmation[TeacherCommand]):
                 if isinstance(rule, Ruled):
                     words = rule_confirmation(rule, self._teaching.activity)
         if words is None or not self._yes.typed:
+            self._unasked = words is not None and isinstance(command, SameWhatever)
             return command
         self._put(command, words)
         return None

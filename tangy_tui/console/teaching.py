@@ -257,7 +257,7 @@ class TeachingLines:
         word = read_teaching(text, self._teaching.phrasebook.game)
         if isinstance(word, StopCommand | Leave):
             self._sure.drop()
-        if self._sure.open:
+        if self._sure.takes(text):
             return self._sure.answer(text)
         answer, question = read_answer(text), self._teaching.question
         remark = self._teaching.remark

@@ -126,3 +126,27 @@ def test_a_typed_rule_is_only_made_after_a_yes(
     for situation in would.covers:
         assert teaching.activity.in_words(situation) in written[0]
     assert asks.ask(SameWhatever(("weather",))) == SameWhatever(("weather",)), "tells why not"
+
+
+@pytest.mark.parametrize(("line", "stays"), [("y", True), ("N", False), ("no", False)])
+def test_a_script_is_not_asked_about_a_rule_but_may_hold_the_answer(
+    workspace: Workspace, teaching: TeachingSession, line: str, stays: bool
+) -> None:
+    asks = ConfirmingTeacher(teaching, TypedYes(), list[str]().append)
+    rule = asks.ask(SameWhatever(("clock",)))
+    assert rule is not None and not asks.open
+    assert isinstance(teaching.apply(rule)[0], Ruled)
+    assert asks.takes(line)
+    if (then := asks.answer(line)) is not None:
+        assert isinstance(teaching.apply(then)[0], RuleUndone)
+    assert bool(read_library(workspace.store, "trivia").resolutions) == stays
+    assert not asks.takes("n"), "the step itself stays"
+
+
+def test_a_line_after_a_rule_of_a_script_that_answers_nothing_is_a_command(
+    teaching: TeachingSession,
+) -> None:
+    asks = ConfirmingTeacher(teaching, TypedYes(), list[str]().append)
+    assert asks.ask(SameWhatever(("clock",))) is not None
+    assert not asks.takes("2") and not asks.takes("n")
+    assert asks.ask(SameWhatever(("weather",))) is not None and not asks.takes("n"), "no rule"
