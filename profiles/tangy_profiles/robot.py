@@ -121,6 +121,23 @@ class FaceModels:
     recogniser: Path
 
 
+@dataclass(frozen=True, slots=True)
+class MissingPosture:
+    """A behaviour whose posture a robot, by its title, does not have; `near` names the nearest."""
+
+    behaviour: str
+    posture: str
+    robot: str
+    near: str
+
+    def __str__(self) -> str:
+        """Tell it, as in the messages about a file."""
+        return (
+            f"behaviours[{self.behaviour}].posture = {self.posture!r}: "
+            f"{self.robot} has no such posture; {self.near}"
+        )
+
+
 @dataclass(frozen=True)
 class Robot:
     """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices.
@@ -149,19 +166,25 @@ class Robot:
     body: BodyProfile = field(default_factory=BodyProfile)
     undriven: tuple[DeviceProfile, ...] = ()
 
+    def missing_posture(self, activity: Activity) -> MissingPosture | None:
+        """Return the first posture of an activity that the robot does not have; None: it has all.
+
+        Without limbs it needs none.
+        """
+        for behaviour in activity.behaviours.values():
+            if self.limbs and behaviour.posture not in self.postures:
+                near = nearest(behaviour.posture, self.postures)
+                return MissingPosture(behaviour.name, behaviour.posture, self.title, near)
+        return None
+
     def check(self, activity: Activity) -> None:
-        """Check that the robot has every posture of an activity; without limbs it needs none.
+        """Check that the robot has every posture of an activity.
 
         Raises:
             ProfileError: names the behaviour and the nearest posture.
         """
-        for behaviour in activity.behaviours.values():
-            if self.limbs and behaviour.posture not in self.postures:
-                raise ProfileError(
-                    f"{activity.source}: behaviours[{behaviour.name}].posture = "
-                    f"{behaviour.posture!r}: {self.title} has no such posture; "
-                    f"{nearest(behaviour.posture, self.postures)}"
-                )
+        if (missing := self.missing_posture(activity)) is not None:
+            raise ProfileError(f"{activity.source}: {missing}")
 
 
 def shipped_robots() -> dict[str, Path]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from tangy_profiles.activity import Activity, StageRule
 from tangy_profiles.activity_parts import GAME, VISIT
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.declared.activity import DeclaredActivity
-from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
@@ -35,27 +35,45 @@ class CheckedFile:
     notes: tuple[str, ...] = ()
 
 
-def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> CheckedFile:
+At: TypeAlias = Callable[[str], str]
+"""Returns the file of a behaviour, by name, with its line if it is known: "quiz.toml:12"."""
+
+
+def check_activity(
+    activity: Activity,
+    robot: Robot,
+    people: Sequence[Person],
+    lines: Mapping[str, int] | None = None,
+) -> CheckedFile:
     """Check an activity that could be read.
 
     Phrases that are confused with others, or cannot be recognised, are mistakes; the game can be
     played without them, so the file still loads.
+
+    Args:
+        activity: the activity.
+        robot: the robot that has to do it.
+        people: whose names its phrases contain.
+        lines: the line of each behaviour in its file, if they are known.
     """
     mistakes: list[str] = []
-    try:
-        robot.check(activity)
-    except ProfileError as error:
-        mistakes.append(str(error))
+
+    def at(behaviour: str) -> str:
+        line = (lines or {}).get(behaviour)
+        return activity.source if line is None else f"{activity.source}:{line}"
+
+    if (missing := robot.missing_posture(activity)) is not None:
+        mistakes.append(f"{at(missing.behaviour)}: {missing}")
     phrasebook = Phrasebook(activity, people)
-    mistakes += [*_phrases(activity, phrasebook), *_reserved(activity, phrasebook)]
-    mistakes += _fillers(activity, phrasebook)
-    mistakes += _sounds(activity, phrasebook)
+    mistakes += [*_phrases(activity, phrasebook, at), *_reserved(activity, phrasebook, at)]
+    mistakes += _fillers(activity, phrasebook, at)
+    mistakes += _sounds(activity, phrasebook, at)
     warnings = [
         *_pressing(activity),
         *_asking(activity),
         *_stages(activity),
         *_unused(activity, phrasebook),
-        *_near(activity, phrasebook),
+        *_near(activity, phrasebook, at),
     ]
     return CheckedFile(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
 
@@ -119,12 +137,12 @@ def _covers(other: StageRule, rule: StageRule) -> bool:
     )  # fmt: skip
 
 
-def _phrases(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+def _phrases(activity: Activity, phrasebook: Phrasebook, at: At) -> Iterator[str]:
     """Report phrases that are understood as another behaviour than their own."""
     for behaviour in activity.behaviours.values():
         heard = {phrase: _heard(phrasebook, phrase) for phrase in _ways(behaviour)}
         lost = {phrase: as_ for phrase, as_ in heard.items() if as_ != behaviour.name}
-        where = f"{activity.source}: behaviours[{behaviour.name}].phrases"
+        where = f"{at(behaviour.name)}: behaviours[{behaviour.name}].phrases"
         if len(lost) == len(heard):
             yield f"{where}: nobody can ask for it: " + "; ".join(map(_as, lost.items())) + "."
         else:
@@ -146,7 +164,7 @@ def _as(lost: tuple[str, str | None]) -> str:
     return f"{phrase!r} is " + ("not understood" if heard is None else f"heard as {heard!r}")
 
 
-def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+def _reserved(activity: Activity, phrasebook: Phrasebook, at: At) -> Iterator[str]:
     """Report phrases with a fixed meaning: stop commands and answers."""
     for phrase in phrasebook.table.all():
         stop, said = stops(phrase.said), phrase.said
@@ -157,15 +175,15 @@ def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             if phrase.words == words_of(phrase.behaviour):
                 place, change = f"behaviours[{phrase.behaviour}]", "give it another name"
                 such = such.replace(", such as", ", with a word such as")
-                yield f"{activity.source}: {place}: this name {why}; {change}{such}."
+                yield f"{at(phrase.behaviour)}: {place}: this name {why}; {change}{such}."
                 continue
             yield (
-                f"{activity.source}: {_place(activity, phrase)}: "
+                f"{at(phrase.behaviour)}: {_place(activity, phrase)}: "
                 f"it {why}; ask for it with another word{such}."
             )
 
 
-def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+def _fillers(activity: Activity, phrasebook: Phrasebook, at: At) -> Iterator[str]:
     """Report phrases that differ only in filler words."""
     first: dict[str, Phrase] = {}
     for phrase in phrasebook.table.all():
@@ -173,17 +191,17 @@ def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             other = first.setdefault(" ".join(phrase.bare), phrase)
             if other.behaviour != phrase.behaviour:
                 little = "only small words tell it from"
-                yield _collision(activity, phrasebook, SoundAlike(phrase, other), little)
+                yield _collision(activity, phrasebook, SoundAlike(phrase, other), little, at)
 
 
-def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+def _sounds(activity: Activity, phrasebook: Phrasebook, at: At) -> Iterator[str]:
     """Report phrases that sound like others, and words without a pronunciation."""
     if not can_look_up():
         return
     lexicon = Lexicon(phrasebook)
     for alike in lexicon.alike:
         if alike.phrase.bare != alike.other.bare:
-            yield _collision(activity, phrasebook, alike, "it sounds like")
+            yield _collision(activity, phrasebook, alike, "it sounds like", at)
     for said in lexicon.unknown:
         if said.word in phrasebook.table.own_words:
             phones = said.phones[0] if said.phones else "..."
@@ -194,21 +212,23 @@ def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             )
 
 
-def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+def _near(activity: Activity, phrasebook: Phrasebook, at: At) -> Iterator[str]:
     """Report phrases that differ from others in one phone."""
     if can_look_up():
         for alike in Lexicon(phrasebook).confusable_phrases():
             if alike.phrase.bare != alike.other.bare:
-                yield _collision(activity, phrasebook, alike, "one sound alone tells it from")
+                yield _collision(activity, phrasebook, alike, "one sound alone tells it from", at)
 
 
-def _collision(activity: Activity, phrasebook: Phrasebook, alike: SoundAlike, how: str) -> str:
+def _collision(
+    activity: Activity, phrasebook: Phrasebook, alike: SoundAlike, how: str, at: At
+) -> str:
     """Return a sentence about two confusable phrases, with their places and a suggestion."""
     phrase, other = alike.phrase, alike.other
     word = distinct_word(phrasebook, phrase.behaviour, phrase)
     such = f", such as {word!r}" if word else ""
     return (
-        f"{activity.source}: {_place(activity, phrase)}: {how} {_place(activity, other)}; "
+        f"{at(phrase.behaviour)}: {_place(activity, phrase)}: {how} {_place(activity, other)}; "
         f"put another word into one of them{such}."
     )
 

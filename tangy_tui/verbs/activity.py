@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 import sys
-from collections.abc import Iterable
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -280,9 +278,10 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
         return CheckedFile(plain(Path(name).name), error.lines), None
     except ProfileError as error:
         return CheckedFile(plain(Path(name).name), (str(error),)), None
-    checked = check_activity(activity, robot, load_room().placed(load_people(SHOWN)))
+    people = load_room().placed(load_people(SHOWN))
+    checked = check_activity(activity, robot, people, lines_in_file(name, activity))
     if checked.mistakes:  # the search can take long: mend these first
-        return replace(checked, mistakes=with_lines(checked.mistakes, name)), activity
+        return checked, activity
     if isinstance(activity, DeclaredActivity):
         found = findings(activity)
         flaws, mistakes = list[str](), list[str]()
@@ -302,19 +301,16 @@ def checked_file(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]
     return checked, activity
 
 
-def with_lines(mistakes: Iterable[str], name: str) -> tuple[str, ...]:
-    """Add the line of the behaviour that a mistake names, if an activity is given by its file."""
+def lines_in_file(name: str, activity: Activity) -> dict[str, int]:
+    """Return the lines of the behaviours in the file of an activity; none if it is no file."""
     from tangy_profiles.toml_lines import line_of
 
     path = Path(name)
     if not path.is_file():
-        return tuple(mistakes)
-    text, found = lines_of(path.read_bytes()), list[str]()
-    for mistake in mistakes:
-        named = re.match(r"([^:]+): behaviours\[(.+?)\]", mistake)
-        line = line_of(text, ("behaviours", named[2])) if named is not None else None
-        found.append(mistake if line is None else mistake.replace(":", f":{line}:", 1))
-    return tuple(found)
+        return {}
+    text = lines_of(path.read_bytes())
+    found = {one: line_of(text, ("behaviours", one)) for one in activity.behaviours}
+    return {one: line for one, line in found.items() if line is not None}
 
 
 def _activity_document(name: str, activity: Activity) -> dict[str, Any]:

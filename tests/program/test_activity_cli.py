@@ -298,6 +298,15 @@ def test_a_mistake_is_told_with_its_line_before_the_search(
     assert told in line
 
 
+def test_a_file_with_a_colon_in_its_name_tells_the_line_of_a_mistake(tmp_path: Path) -> None:
+    change = ('"allow time"', '"stop the game"')
+    written = tmp_path / changed_trivia(tmp_path, change).source
+    path = written.rename(tmp_path / "at 3: quiz.toml")
+    (line,) = checked_file(str(path), load_robot())[0].mistakes
+    number = path.read_text("utf-8").splitlines().index('[behaviours."stop the game"]')
+    assert line.startswith(f"at 3: quiz.toml:{number + 1}: behaviours[")
+
+
 def test_a_phrase_that_sounds_like_one_with_a_person_names_it(tmp_path: Path) -> None:
     (found,) = mistakes(tmp_path, with_phrases(("tell a joke", "go two user won")))
     assert ".phrases, with a person = 'go to user one': it sounds like " in found
