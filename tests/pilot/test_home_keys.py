@@ -91,6 +91,25 @@ async def test_the_help_opens_after_any_letters(
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
 
 
+@pytest.mark.parametrize(
+    ("keys", "opens"),
+    [
+        (("h", "x"), True), ((*"hel",), True), ((*"hex",), False), ((*"he", "space", "x"), False),
+        ((*"hex", "backspace"), True), ((*"xyz", "h"), False), ((*"xyz", "up", "down", "h"), True),
+        (("h", "1"), True), (("h", "1", "2"), True), ((*"he1",), False), (("space", "h"), True),
+        (("k", "j", "h"), True), ((*"hex", "enter", "h"), True),
+    ],
+)  # fmt: skip
+async def test_enter_opens_the_line_unless_three_letters_name_no_line(
+    keys: tuple[str, ...], opens: bool, run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
+        pilot.type(*keys, "enter")
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HelpScreen if opens else HomeScreen)
+
+
 async def test_a_second_letter_that_begins_no_name_is_still_a_key(
     run: Run, workspace: Workspace
 ) -> None:
