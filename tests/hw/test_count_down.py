@@ -50,3 +50,21 @@ def test_a_count_down_that_begins_while_held_is_whole(
     assert counted.seconds == pytest.approx(whole)
     counted.lengthen(-whole)
     assert counted.seconds == pytest.approx(0.0)
+
+
+def test_holding_again_and_letting_go_again_change_nothing() -> None:
+    clock = Clock()
+    counted = CountDown(clock)
+    counted.begin(10.0)
+    counted.hold(held=False)
+    clock.now = 2.0
+    assert counted.seconds == 8.0
+    counted.hold(held=True)
+    clock.now = 3.0
+    counted.hold(held=True)
+    clock.now = 4.0
+    counted.hold(held=False)
+    counted.hold(held=False)
+    assert counted.seconds == 8.0
+    clock.now = 5.0
+    assert counted.seconds == 7.0

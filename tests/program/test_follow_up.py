@@ -17,6 +17,11 @@ def test_a_follow_up_command_has_the_options_of_the_call() -> None:
     assert follow_up("Then `tangy learn`.") == "Then `tangy learn`."
 
 
+def test_an_option_that_the_message_names_is_not_added_again() -> None:
+    said = "`tangy learn --activity a --data b`"
+    assert follow_up(said, activity="c", data="d") == said
+
+
 def test_a_follow_up_command_has_only_options_that_it_knows() -> None:
     said = follow_up("See `tangy report session 1`, `tangy doctor`.", activity="a", data="d")
     assert said == "See `tangy report session 1 --data d`, `tangy doctor`."
