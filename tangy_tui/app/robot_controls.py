@@ -21,6 +21,7 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.learning.policy import Decision
+from tangy_tui.monitoring.attention import goes_to_people
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.help_requests import SignState
@@ -130,7 +131,8 @@ class RobotControls:
             case AskFor(person):
                 robot.requests.ask_for(person)
                 self._note("asked for", person=person)
-                return StaffNote("asked for", person)
+                goes = goes_to_people(robot.activity)
+                return StaffNote("asked for" if goes else "asked to help", person)
             case Tell():
                 return self._tell(robot, command)
             case HasCard(person, card):

@@ -29,6 +29,7 @@ DoneKind = Literal[
     "joins",
     "goes",
     "asked for",
+    "asked to help",
     "told",
     "told right",
     "told wrong",

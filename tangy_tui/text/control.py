@@ -201,6 +201,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"Tangy does not know {who}'s card. Add its number: check 17 {who}."
         case "asked for":
             return f"You asked for {name(about)}. Tangy goes there in turn."
+        case "asked to help":
+            return f"You asked for {name(about)}. Tangy helps in turn."
         case (
             "told"
             | "told right"

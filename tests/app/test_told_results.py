@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
-from tangy_tui.app.game_commands import Tell
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.game_commands import AskFor, Tell
 from tangy_tui.app.robot_controls import RobotControls
+from tangy_tui.app.staff_notes import DoneKind, StaffNote
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.control import noted_words
 from tests.app.test_declared_interruption import live
+from tests.app.test_interruption import Robot
 
 NAMES = {"user1": "Rosa", "user2": "Ben", "user3": "Ann"}
 
@@ -62,3 +68,15 @@ def test_a_report_without_a_name_asks_whose_it_is() -> None:
     said = _told(controls, None, "tired")
     assert said == "Who is it? Begin with the name, for example Rosa: tired"
     assert _told(controls, "user2", "tired") == "Ben: tired. Noted."
+
+
+@pytest.mark.parametrize(
+    ("activity", "kind"), [("trivia", "asked to help"), ("bingo", "asked for")]
+)
+def test_tangy_goes_to_whom_staff_ask_for_only_if_it_visits_people(
+    activity: str, kind: DoneKind, taught: Path
+) -> None:
+    robot: LiveWorld = live("trivia") if activity == "trivia" else Robot(Workspace(taught)).world
+    robot.begin()
+    controls = RobotControls(robot, lambda did, **_: None, lambda: False, paced=False)
+    assert controls.do(AskFor("user2")) == StaffNote(kind, "user2")

@@ -204,7 +204,7 @@ class PlayStaff(PlayPanels):
                     continue
                 self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
         noted = {one.kind for one in results if isinstance(one, StaffNote)}
-        if noted & {"comes", "goes", "asked for"}:  # the next step may be a while
+        if noted & {"comes", "goes", "asked for", "asked to help"}:  # the next step may be a while
             self.picture.show_scene(0, drive=False, pace=0)
         ended = "ended" in noted
         self._tell([one for one in results if not isinstance(one, StaffNote)], ended)
