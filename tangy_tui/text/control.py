@@ -9,7 +9,7 @@ from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import CallAgain, ClaimCard, ComesIn, GoesAway, TakeBackCall
 from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
-from tangy_tui.text.told import told_words
+from tangy_tui.text.player_reports import player_report_words
 
 if TYPE_CHECKING:
     from tangy_tui.app.game_commands import Autonomy, GameCommand
@@ -212,7 +212,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             | "not asked"
             | "whose"
         ):
-            return told_words(noted, name(about) if about else "")
+            return player_report_words(noted, name(about) if about else "")
         case "voided":
             return f"{name(about)}'s last response does not count any more."
         case "driven":

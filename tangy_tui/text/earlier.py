@@ -10,7 +10,7 @@ from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted
 from tangy_tui.text.faults import list_lines
 from tangy_tui.text.log import told_lines
-from tangy_tui.text.messages import told_words
+from tangy_tui.text.messages import timed_message
 from tangy_tui.text.times import day_and_time
 
 if TYPE_CHECKING:
@@ -50,7 +50,9 @@ def earlier_messages(
 def earlier_lines(part: EarlierPart, activity: Activity, name: Name) -> list[str]:
     """List the messages of a log in lines, below a heading; none if the program only goes on."""
     told = [] if part.joined else earlier_messages(part, activity, name)
-    return [f"{before_words(part.at)}:", *(f"  {told_words(*one)}" for one in told)] if told else []
+    return (
+        [f"{before_words(part.at)}:", *(f"  {timed_message(*one)}" for one in told)] if told else []
+    )
 
 
 def earlier_fault_lines(part: EarlierPart | None, faults: list[Fault]) -> list[str]:

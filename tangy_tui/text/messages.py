@@ -21,7 +21,7 @@ GONE: tuple[MoveKind, ...] = ("recovered", "ended")
 """The moves that end a fault because it has gone."""
 
 
-def told_words(at: datetime, words: str) -> str:
+def timed_message(at: datetime, words: str) -> str:
     """Write a message with the time of day at which it was shown (s matter in a game)."""
     return f"{at:%H:%M:%S} {words}"
 

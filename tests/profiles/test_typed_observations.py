@@ -11,7 +11,7 @@ from tangy_profiles.activity import read_activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.judging import judged
-from tangy_profiles.declared.told import Told, told_now
+from tangy_profiles.declared.player_reports import PlayerReport, read_report
 from tangy_profiles.declared.typed_observations import TypedObservation, meant, sayable
 from tests.support.declared import declared
 
@@ -100,7 +100,7 @@ def test_options_are_suggested_only_while_their_question_is_open() -> None:
 )
 def test_staff_can_say_that_an_answer_was_right_or_wrong(said: str, value: str) -> None:
     game = _game("trivia", "welcome everyone", "ask question")
-    told = told_now(game, "user1", said, 1.0)
+    told = read_report(game, "user1", said, 1.0)
     assert told is not None and told.counts and told.by_staff
     assert told.judgement == value
     game.observe(*told.meant)
@@ -117,8 +117,8 @@ def test_no_answer_is_no_verdict() -> None:
 
 def test_an_answer_that_was_not_clear_is_not_judged() -> None:
     game = _game("trivia", "welcome everyone", "ask question")
-    told = told_now(game, "user1", "earth", 0.5)
-    assert told == Told(TypedObservation("answer", "user1", "earth"), True, "", False)
+    told = read_report(game, "user1", "earth", 0.5)
+    assert told == PlayerReport(TypedObservation("answer", "user1", "earth"), True, "", False)
 
 
 def test_a_value_that_is_denied_is_not_observed() -> None:
@@ -165,16 +165,16 @@ def test_an_answer_counts_if_the_game_waits_for_those_of_all(tmp_path: Path) -> 
     every = ("any guess is right", "every guess is right"), ("any guess is wrong", "clock is >=25")
     game = _buzz(tmp_path, *every, ('about = "whose guess is wrong" },\n', 'sees = ["clock"] },\n'))
     for who in PLAYERS:
-        early = told_now(game, who, "right", 1.0)
+        early = read_report(game, who, "right", 1.0)
         assert early is not None and not early.counts
     game.execute("ask all", None)
     for who in PLAYERS:
-        told = told_now(game, who, "right", 1.0)
+        told = read_report(game, who, "right", 1.0)
         assert told is not None and told.counts
         game.observe(*told.meant)
     assert game.stage()[0].name == "right"
     game.execute("tell it", None)
-    late = told_now(game, "user1", "wrong", 1.0)
+    late = read_report(game, "user1", "wrong", 1.0)
     assert late is not None and not late.counts
 
 
@@ -194,10 +194,10 @@ def test_an_answer_that_no_stage_reads_counts_at_any_time(tmp_path: Path, by_a_t
         test = 'solved = { kind = "test", when = ["any guess is right"] }\n[people]'
         changes = [("points is >=1", "solved is yes"), ("[people]", test)]
     game = _buzz(tmp_path, *NO_STAGE_READS, *changes)
-    early = told_now(game, "user1", "right", 1.0)
+    early = read_report(game, "user1", "right", 1.0)
     assert early is not None and early.counts is not by_a_test
     game.execute("ask all", None)
-    told = told_now(game, "user1", "right", 1.0)
+    told = read_report(game, "user1", "right", 1.0)
     assert told is not None and told.counts
 
 
@@ -225,30 +225,30 @@ def test_the_right_answer_of_an_item_is_no_verdict_on_it(
 
 def test_an_answer_counts_only_while_its_question_is_open() -> None:
     game = _game("trivia", "welcome everyone")
-    early = told_now(game, "user1", "right", 1.0)
+    early = read_report(game, "user1", "right", 1.0)
     assert early is not None and not early.counts
     game.execute("ask question", "user1")
-    other = told_now(game, "user2", "earth", 1.0)
+    other = read_report(game, "user2", "earth", 1.0)
     assert other is not None and not other.counts, "it is the turn of another person"
     game.observe("asking", "user3", "yes")
-    asked = told_now(game, "user1", "earth", 1.0)
+    asked = read_report(game, "user1", "earth", 1.0)
     assert asked is not None and asked.counts, "also while a person asks for help"
     game.execute("tell answer", "user1")
-    late = told_now(game, "user1", "earth", 1.0)
+    late = read_report(game, "user1", "earth", 1.0)
     assert late is not None and not late.counts
 
 
 def test_a_fact_without_a_name_is_only_assumed_of_the_person_in_turn() -> None:
-    told = told_now(_game("exercises"), None, "tired", 1.0)
+    told = read_report(_game("exercises"), None, "tired", 1.0)
     assert told is not None and told.whose and not told.counts
-    own = told_now(_game("trivia", "welcome everyone", "ask question"), None, "mars", 1.0)
+    own = read_report(_game("trivia", "welcome everyone", "ask question"), None, "mars", 1.0)
     assert own is not None and own.meant.who == "user1" and own.counts
-    heard = told_now(_game("exercises"), None, "tired", 1.0, "speech")
+    heard = read_report(_game("exercises"), None, "tired", 1.0, "speech")
     assert heard is not None and heard.meant.who == "user1"
-    named = told_now(_game("exercises"), "user3", "tired", 1.0, "speech")
-    assert named == Told(TypedObservation("tired", "user3", "yes"), True, "", False)
+    named = read_report(_game("exercises"), "user3", "tired", 1.0, "speech")
+    assert named == PlayerReport(TypedObservation("tired", "user3", "yes"), True, "", False)
 
 
 def test_a_fact_of_the_group_needs_no_name() -> None:
-    told = told_now(_game("memory"), None, "miss", 1.0)
-    assert told == Told(TypedObservation("cards", None, "miss"), True, "", False)
+    told = read_report(_game("memory"), None, "miss", 1.0)
+    assert told == PlayerReport(TypedObservation("cards", None, "miss"), True, "", False)

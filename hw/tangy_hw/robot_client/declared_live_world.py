@@ -25,11 +25,11 @@ from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.lots import drawn_game
 from tangy_profiles.declared.memory import GameMemory, game_from, memory_of
 from tangy_profiles.declared.model import PAUSE_SECONDS
+from tangy_profiles.declared.player_reports import PlayerReport, read_report
 from tangy_profiles.declared.progress import ProgressWatch
 from tangy_profiles.declared.silence import silence
 from tangy_profiles.declared.situation_words import words_now
 from tangy_profiles.declared.speech import again, media, with_names, words
-from tangy_profiles.declared.told import Told, told_now
 from tangy_profiles.declared.typed_observations import meant
 from tangy_profiles.declared.vocabulary import ASKING, HERE, NO, YES
 from tangy_profiles.defaults import ASK_AGAIN
@@ -135,7 +135,7 @@ class DeclaredLiveWorld(LiveWorld):
 
     def tell(
         self, who: str | None, said: str, certainty: float = 1.0, source: str = "staff"
-    ) -> Told | None:
+    ) -> PlayerReport | None:
         """Add a report about a person, or their answer; it takes effect at the next observation.
 
         Args:
@@ -147,7 +147,7 @@ class DeclaredLiveWorld(LiveWorld):
         Returns:
             What the words state, taken in if it counts; None if they state no fact.
         """
-        told = None if self.over else told_now(self.ahead, who, said, certainty, source)
+        told = None if self.over else read_report(self.ahead, who, said, certainty, source)
         if told and told.counts:
             self.take(FactObservation(told.meant, certainty, source))
         return told

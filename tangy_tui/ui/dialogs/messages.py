@@ -42,9 +42,9 @@ class MessagesDialog(PageDialog):
         """Format the page for a width in cells."""
         lines: list[PageLine] = []
         for at, words in self._told:
-            lines += paragraph(text.told_words(at, words), width)
+            lines += paragraph(text.timed_message(at, words), width)
         if self._before:
             lines += heading(self._heading) if lines else heading(self._heading)[1:]
         for at, words in self._before:
-            lines += paragraph(text.told_words(at, words), width, "dim")
+            lines += paragraph(text.timed_message(at, words), width, "dim")
         return lines or paragraph(text.NONE_YET, width)

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.staff_notes import StaffNote
 
 
-def told_words(noted: StaffNote, name: str) -> str:
+def player_report_words(noted: StaffNote, name: str) -> str:
     """Tell what became of a report about a person, by name ("" for the group)."""
     whose = f"{name}: " if name else ""
     match noted.kind:

@@ -1,4 +1,4 @@
-"""Reports about people during a game, and what becomes of them."""
+"""Reports of staff or speech about players during a game, and whether they count."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STAFF, SPEECH = "staff", "speech"
 Judgement = Literal["", "right", "wrong"]
 
 
-class Told(NamedTuple):
+class PlayerReport(NamedTuple):
     """What words state about whom, and whether it counts now.
 
     `judgement` is that of an answer, "" if there is none; `by_staff`: they gave it, not an answer.
@@ -27,9 +27,9 @@ class Told(NamedTuple):
     """Whether the fact is a player's, and it is not clear of whom."""
 
 
-def told_now(
+def read_report(
     game: DeclaredGame, who: str | None, said: str, certainty: float, source: str = STAFF
-) -> Told | None:
+) -> PlayerReport | None:
     """Parse a report about a player (None: nobody is named); None if it states no fact.
 
     `certainty` is the probability that it is right, `source` its origin.
@@ -40,11 +40,11 @@ def told_now(
     declaration = game.declaration
     fact = declaration.facts[found.fact]
     if fact.per_player and found.who is None:
-        return Told(found, counts=False, judgement="", by_staff=False, whose=True)
+        return PlayerReport(found, counts=False, judgement="", by_staff=False, whose=True)
     if not fact.checks:
-        return Told(found, counts=True, judgement="", by_staff=False)
+        return PlayerReport(found, counts=True, judgement="", by_staff=False)
     if not counts_now(game, fact, found.who):
-        return Told(found, counts=False, judgement="", by_staff=False)
+        return PlayerReport(found, counts=False, judgement="", by_staff=False)
     value = judged(fact, declaration.items, game.row, found.raw, certainty)
     judgement: Judgement = "" if value is None else "right" if value == fact.values[1] else "wrong"
-    return Told(found, True, judgement, found.raw.startswith(VERDICT))
+    return PlayerReport(found, True, judgement, found.raw.startswith(VERDICT))
