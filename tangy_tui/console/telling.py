@@ -17,7 +17,7 @@ from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
 from tangy_tui.text.control import claimed_words, noted_words, waits_words
 from tangy_tui.text.games import game_lines
-from tangy_tui.text.messages import told_words
+from tangy_tui.text.messages import timed_message
 from tangy_tui.text.situations import Name
 from tangy_tui.text.times import local_now
 
@@ -58,7 +58,7 @@ class GameTelling:
     def tell_lines(self, lines: Iterable[str]) -> None:
         """Write lines about the game, and keep them, to be told again."""
         for line in lines:
-            self._last.append(told_words(local_now(), line.strip()))
+            self._last.append(timed_message(local_now(), line.strip()))
             self.write(line)
 
     def tell(self, told: Sequence[ControllerOutput]) -> None:

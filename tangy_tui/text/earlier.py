@@ -6,11 +6,10 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 from tangy_tui.monitoring.earlier import EarlierPart
-from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, Moment, Noted
 from tangy_tui.text.faults import list_lines
 from tangy_tui.text.log import told_lines
-from tangy_tui.text.messages import timed_message
+from tangy_tui.text.messages import one_sentence, timed_message
 from tangy_tui.text.times import day_and_time
 
 if TYPE_CHECKING:
@@ -50,9 +49,8 @@ def earlier_messages(
 def earlier_lines(part: EarlierPart, activity: Activity, name: Name) -> list[str]:
     """List the messages of a log in lines, below a heading; none if the program only goes on."""
     told = [] if part.joined else earlier_messages(part, activity, name)
-    return (
-        [f"{before_words(part.at)}:", *(f"  {timed_message(*one)}" for one in told)] if told else []
-    )
+    lines = [f"  {timed_message(*one)}" for one in told]
+    return [f"{before_words(part.at)}:", *lines] if lines else []
 
 
 def earlier_fault_lines(part: EarlierPart | None, faults: list[Fault]) -> list[str]:
@@ -73,8 +71,5 @@ def _is_message(moment: Moment) -> bool:
 
 
 def _sentence(moment: Moment, activity: Activity, name: Name) -> str:
-    lines = told_lines(moment, activity, name)
-    if isinstance(moment.what, Diagnosed):
-        lines = lines[:1]  # the list of faults has the evidence
-    words = " ".join(line.lstrip("!?* ") for line in lines)
+    words = one_sentence(moment.what, told_lines(moment, activity, name))
     return f"{words[:1].upper()}{words[1:]}"

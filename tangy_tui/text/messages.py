@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import datetime
 
 from tangy_profiles.game_records import MoveKind
@@ -30,7 +31,11 @@ def fault_message(event: FaultEvent) -> str:
     """Tell a fault, or what became of it, in one message."""
     if not isinstance(event, Diagnosed) and event.move.kind in GONE:
         return f"{event.fault.name}: this fault has gone."
-    lines = fault_lines(event)
+    return one_sentence(event, fault_lines(event))
+
+
+def one_sentence(event: object, lines: Sequence[str]) -> str:
+    """Join the lines that tell an event, without their marks."""
     if isinstance(event, Diagnosed):
         lines = lines[:1]  # the list of faults has the evidence
     return " ".join(line.lstrip("!?* ") for line in lines)
