@@ -28,11 +28,12 @@ from tangy_tui.text.endings import all_endings, ending_sentence
 from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.player_facts import look_after_lines
-from tangy_tui.text.report import WORLD_WORDS, care_lines
+from tangy_tui.text.report import care_lines
 from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
+from tangy_tui.text.worlds import WORLD_WORDS
 
 MOST_DRAWN = 24
 """The most games drawn on one page: the last ones."""

@@ -14,7 +14,6 @@ from tangy_tui.monitoring.presence import stays
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.report import (
-    WORLD_WORDS,
     asked_words,
     helped_words,
     response_words,
@@ -27,6 +26,7 @@ from tangy_tui.text.report import (
 from tangy_tui.text.results import ways_of
 from tangy_tui.text.taking_part import stay_words
 from tangy_tui.text.times import length, on_day
+from tangy_tui.text.worlds import WORLD_WORDS
 
 NOTHING = "\N{EN DASH}"
 MONTHS = "Month by month"

@@ -25,7 +25,6 @@ from tangy_tui.text.player_facts import (
 )
 from tangy_tui.text.report import (
     FAULTS_SHORT,
-    WORLD_WORDS,
     attention_lines,
     call_lines,
     care_lines,
@@ -42,6 +41,7 @@ from tangy_tui.text.staff_report import staff_action_lines
 from tangy_tui.text.steps import step_sentence, unfinished_words
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
+from tangy_tui.text.worlds import WORLD_WORDS
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_records import GameChange
-from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, UNKNOWN, GameWorld
+from tangy_profiles.game_world import SIMULATED
 from tangy_tui.monitoring.attention import (
     LEAST_WAIT,
     Attention,
@@ -33,14 +33,6 @@ from tangy_tui.text.times import length, time_of_day
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.games import Game
-
-WORLD_WORDS: Mapping[GameWorld, str] = {
-    UNKNOWN: "from an unknown world",
-    SIMULATED: "simulated",
-    BENCH: "on the bench, with simulated devices",
-    LIVE: "live, with a robot",
-}
-"""The worlds of games, in reports."""
 
 PEOPLE = "Who got what"
 CALLED = "Numbers that were called"

@@ -11,3 +11,11 @@ WORLDS: dict[GameWorld, str] = {
     LIVE: "live, with the robot",
 }
 """The worlds of games, on screens and pages."""
+
+WORLD_WORDS: dict[GameWorld, str] = {
+    UNKNOWN: "from an unknown world",
+    SIMULATED: "simulated",
+    BENCH: "on the bench, with simulated devices",
+    LIVE: "live, with a robot",
+}
+"""The worlds of games, in reports."""
