@@ -167,13 +167,12 @@ def _with_facts(person: PersonNow, world: object) -> PersonNow:
     if not isinstance(game, DeclaredGame):
         return person
     declared = game.declaration
-    turns = any(behaviour.passes_turn for behaviour in declared.behaviours.values())
     counts = tuple(
         (fact.name, round(game.number(fact, person.id)))
         for fact in declared.facts.values()
         if fact.kind == "count" and fact.per_player
     )
-    turn = turns and game.players[game.turn] == person.id
+    turn = declared.takes_turns and game.players[game.turn] == person.id
     return replace(
         person,
         counts=counts,

@@ -158,8 +158,7 @@ def uneven_notes(activity: DeclaredActivity) -> Iterator[str]:
     """Tell if teams that take turns cannot have as many rounds each."""
     declaration = activity.declaration
     rounds, teams = declaration.items.rounds, len(declaration.teams)
-    passes = any(one.passes_turn for one in declaration.behaviours.values())
-    if passes and teams and rounds % teams:
+    if declaration.takes_turns and teams and rounds % teams:
         yield f"{teams} teams cannot share {counted(rounds, 'round')} evenly: some get one more."
 
 

@@ -225,6 +225,11 @@ class Declaration:
         return tuple(sorted(numbers.union(fact.bands)))
 
     @cached_property
+    def takes_turns(self) -> bool:
+        """Whether players take turns."""
+        return any(behaviour.passes_turn for behaviour in self.behaviours.values())
+
+    @cached_property
     def most_counted(self) -> int:
         """The highest number that a count is compared with."""
         counts = [fact for fact in self.facts.values() if fact.kind == "count"]

@@ -109,7 +109,7 @@ def about(game: DeclaredGame) -> str | None:
     stage, person = game.stage()
     if stage.about in ("whose turn", "addressed") and person is not None:
         return person
-    if any(one.passes_turn for one in game.declaration.behaviours.values()):
+    if game.declaration.takes_turns:
         return game.players[game.turn]
     return game.here[0] if len(game.here) == 1 else None
 
