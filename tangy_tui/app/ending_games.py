@@ -11,7 +11,7 @@ from tangy_profiles.process_log import serving
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import TAKEN_OVER
+from tangy_tui.app.game_commands import asked_for
 from tangy_tui.app.robot_controls import ENDED, PROGRAM_ENDS, RobotControls
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -74,7 +74,7 @@ class EndingGames:
     def _end(self) -> list[Result]:
         self.note("ended")
         game = self.supervision
-        asked = game.question is not None and game.question.fault != TAKEN_OVER
+        asked = game.question is not None and not asked_for(game.question)
         events = game.give_up() if asked or game.halted is not None else game.leave()
         return [StaffNote("ended"), *events]
 

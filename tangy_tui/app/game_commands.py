@@ -7,7 +7,10 @@ out (see `game_controller`) and answers with events of the game, or with a `Staf
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+
+if TYPE_CHECKING:
+    from tangy_tui.interaction.game_events import Unsure
 
 Autonomy = Literal["alone", "unsure", "each"]
 AUTONOMY: tuple[Autonomy, ...] = get_args(Autonomy)
@@ -32,6 +35,11 @@ TWISTS: dict[Direction, tuple[float, float]] = {
 
 TAKEN_OVER = "took over"
 """The subject of a question that staff asked for; other questions name the id of a fault."""
+
+
+def asked_for(question: Unsure | None) -> bool:
+    """Return whether staff asked for a question, so that Tangy could also go on by itself."""
+    return question is not None and question.fault == TAKEN_OVER
 
 
 @dataclass(frozen=True, slots=True)

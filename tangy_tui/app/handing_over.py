@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import TAKEN_OVER
+from tangy_tui.app.game_commands import TAKEN_OVER, asked_for
 from tangy_tui.app.pausing_games import PausingGames
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.monitoring.supervision import Event
@@ -40,7 +40,7 @@ class HandingOver(PausingGames):
     def _give_back(self) -> list[Result]:
         given, self.taking_over = self.taking_over, False  # first: `next` asks while it is set
         question = self.supervision.question
-        asked = question is not None and question.fault == TAKEN_OVER
+        asked = asked_for(question)
         if not given and not asked:
             return [StaffNote("nothing asked") if question is None else self.asks_first()]
         self.note("gave back")
@@ -61,8 +61,7 @@ class HandingOver(PausingGames):
 
     def asks_first(self) -> StaffNote:
         """Return the refusal of what has to wait for an answer: about control, or about Tangy."""
-        question = self.supervision.question
-        wanted = question is not None and question.fault == TAKEN_OVER
+        wanted = asked_for(self.supervision.question)
         return StaffNote("asks first", TAKEN_OVER if wanted else "")
 
     def _confirm(self, *, yes: bool) -> list[Result]:

@@ -9,7 +9,7 @@ from tangy_profiles.declared.game import DeclaredGame
 from tangy_profiles.declared.joint_state import joint_state
 from tangy_profiles.planned_game import as_planned
 from tangy_profiles.present_moment import as_present
-from tangy_tui.app.game_commands import TAKEN_OVER
+from tangy_tui.app.game_commands import asked_for
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.help_requests import SignState
@@ -183,7 +183,7 @@ def _holder(control: GameController) -> tuple[Holder, str]:
             return "driving" if control.robot.driving else "taking over", ""
         case "asking":
             if (question := game.question) is not None:
-                taken = question.fault == TAKEN_OVER
+                taken = asked_for(question)
                 return ("taking over", "") if taken else ("question", question.reason)
             proposal = control.proposal
             return ("confirming", "") if proposal is None else ("proposal", proposal.behaviour)
@@ -208,9 +208,7 @@ def turns_from_now(world: object) -> tuple[str, ...]:
     """Return the order of turns from now on, in a game declared by facts that has turns."""
     now = as_present(world)
     game = getattr(world, "game", None) if now is None else now.ahead
-    if not isinstance(game, DeclaredGame):
-        return ()
-    if not any(one.passes_turn for one in game.declaration.behaviours.values()):
+    if not isinstance(game, DeclaredGame) or not game.declaration.takes_turns:
         return ()
     order = (*game.players[game.turn :], *game.players[: game.turn])
     return tuple(one for one in order if one in game.here)

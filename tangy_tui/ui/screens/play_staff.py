@@ -30,6 +30,7 @@ from tangy_tui.app.game_commands import (
     Pause,
     StopRobot,
     Tell,
+    asked_for,
 )
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
@@ -65,7 +66,6 @@ from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.joining import ask_where, ask_who_joins
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer
-from tangy_tui.ui.screens.question_text import wanted
 
 PACE_SECONDS = 1.0
 """The delay after the last change of pace before the new pace is shown."""
@@ -367,7 +367,7 @@ class PlayStaff(PlayPanels):
                 await asking.remove()
         match answer:
             case NoAnswer.WITHDRAWN:
-                if wanted(question) and self._supervision.question is question:
+                if asked_for(question) and self._supervision.question is question:
                     self._do(GiveBack())
             case NoAnswer.GIVE_UP:
                 self._tell(self.control.give_up(), True)

@@ -17,7 +17,7 @@ from textual.widgets import Static
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
 from tangy_tui.app.command_grammar import read_command
-from tangy_tui.app.game_commands import Accept, EndGame, GameCommand, GiveBack, StopRobot
+from tangy_tui.app.game_commands import Accept, EndGame, GameCommand, GiveBack, StopRobot, asked_for
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
 from tangy_tui.app.staff_notes import StaffNote
@@ -46,7 +46,7 @@ from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.hearing import hearing_of
 from tangy_tui.ui.keys import foot, keymap_of
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.screens.question_text import question_words, seen_words, wanted
+from tangy_tui.ui.screens.question_text import question_words, seen_words
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
 from tangy_tui.ui.widgets.command_bar import AnswerBar, CommandBar
 from tangy_tui.ui.widgets.log_view import Kind, LogView
@@ -122,7 +122,7 @@ class AskingPanel(Vertical):
         self._by_voice = False  # the present command was spoken
         self._hearing = hearing_of(self.app)
         self._before = clean(before)
-        self.wanted = wanted(question)
+        self.wanted = asked_for(question)
         """Whether staff requested the question."""
         self.set_class(bool(before), "-says")
         self.border_title = "Tangy asks"

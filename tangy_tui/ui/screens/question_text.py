@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from tangy_tui.app.game_commands import TAKEN_OVER
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.monitoring.supervision import Supervision
@@ -27,8 +26,3 @@ def seen_words(workspace: Workspace, game: Supervision, question: Unsure) -> str
     scene = game.world.scene()
     words = state_words(workspace.activity, question.state, scene, workspace.name)
     return clean(f"Now: {words}")
-
-
-def wanted(question: Unsure) -> bool:
-    """Return whether staff requested the question, so that Tangy could also continue by itself."""
-    return question.fault == TAKEN_OVER
