@@ -28,6 +28,7 @@ from tangy_tui.app.game_commands import (
     AskFor,
     CallAgain,
     CallExpert,
+    ClaimCard,
     Clear,
     ComesIn,
     Confirm,
@@ -289,6 +290,8 @@ class GameController(HandingOver):
             return [StaffNote("joining" if self.joined else "no game")]
         if self._stands_at_end and not isinstance(command, StopRobot | EndGame):
             return [StaffNote("ends")]
+        if isinstance(command, ClaimCard) and self.plan.judged(command) is not None:
+            self.robot.keep_claimed(command)
         if isinstance(command, PlanCommand):
             return self.plan.do(command)
         match command:

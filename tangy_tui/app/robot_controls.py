@@ -15,6 +15,7 @@ from tangy_tui.app.game_commands import (
     TWISTS,
     AskFor,
     CallAgain,
+    ClaimCard,
     Drive,
     HasCard,
     Tell,
@@ -145,6 +146,17 @@ class RobotControls:
         self._note("called again", detail=label)
         robot.call_again()
         return StaffNote("call again", label)
+
+    def keep_claimed(self, claim: ClaimCard) -> None:
+        """Note the card that staff say a person claims with, if nobody knew either's before.
+
+        Otherwise the first card that a camera sees there would count as theirs, against that word.
+        """
+        if (robot := self._robot) is None or not (claim.person and claim.card):
+            return
+        dealt = robot.cards.dealt
+        if dealt.card_of(claim.person) is None and not dealt.owner(claim.card):
+            self._give_card(robot, claim.person, claim.card)
 
     def _give_card(self, robot: LiveWorld, person: str, card: int) -> StaffNote:
         """Note whose card it is, and who had it until now as far as Tangy knew."""

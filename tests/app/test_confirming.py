@@ -114,8 +114,8 @@ class Typist:
 
 def test_the_end_asks_a_person_who_types(workspace: Workspace) -> None:
     told = Typist(
-        ("call number", "end"), ("End the game?", "perhaps"), ("End the game?", "n"),
-        ("call number", "end"), ("End the game?", "y"),
+        ("Call number", "end"), ("End the game?", "perhaps"), ("End the game?", "n"),
+        ("Call number", "end"), ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
     assert told.count("End the game?") == 3 and "Not done." in told
     assert "You ended the game." in told.split("Not done.")[1]
@@ -123,7 +123,7 @@ def test_the_end_asks_a_person_who_types(workspace: Workspace) -> None:
 
 def test_a_call_is_taken_back_only_after_a_yes(workspace: Workspace) -> None:
     told = Typist(
-        ("call number", "take back"), ("Take ", "n"), ("call number", "take back"), ("Take ", "y"),
+        ("Call number", "take back"), ("Take ", "n"), ("Call number", "take back"), ("Take ", "y"),
         ("counts as not called", "end"), ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
     assert "counts as not called" not in told.split("Not done.")[0]
@@ -131,14 +131,14 @@ def test_a_call_is_taken_back_only_after_a_yes(workspace: Workspace) -> None:
 
 def test_a_script_is_asked_nothing(workspace: Workspace) -> None:
     told = Typist(
-        ("call number", "take back"), ("counts as not called", "end")
+        ("Call number", "take back"), ("counts as not called", "end")
     ).plays(workspace, typed=False)  # fmt: skip
     assert "You ended the game." in told and "Type Y" not in told
 
 
 def test_a_stop_needs_no_answer_first(workspace: Workspace) -> None:
     told = Typist(
-        ("call number", "end"), ("End the game?", "stop"), ("STOP", "end"), ("End the game?", "y")
+        ("Call number", "end"), ("End the game?", "stop"), ("STOP", "end"), ("End the game?", "y")
     ).plays(workspace)
     assert "You ended the game." in told.split("STOP")[1]
 
@@ -150,7 +150,7 @@ def test_words_instead_of_a_yes_or_after_a_no_are_carried_out(
     workspace: Workspace, line: str
 ) -> None:
     told = Typist(
-        ("call number", "end"), ("End the game?", line), ("User 2 has left", "end"),
+        ("Call number", "end"), ("End the game?", line), ("User 2 has left", "end"),
         ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
     acts = [event.record for event in workspace.store.events(StaffAction)]
@@ -162,7 +162,7 @@ def test_a_question_of_staff_is_answered_and_the_open_one_asked_again(
     workspace: Workspace,
 ) -> None:
     told = Typist(
-        ("call number", "end"), ("End the game?", "here nobody"), ("nobody", "people"),
+        ("Call number", "end"), ("End the game?", "here nobody"), ("nobody", "people"),
         ("End the game?", "end"), ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
     assert told.count("End the game?") == 3 and "Not done." not in told
@@ -172,7 +172,7 @@ def test_a_question_of_staff_is_answered_and_the_open_one_asked_again(
 
 def test_a_line_with_an_unknown_person_is_refused_whole(workspace: Workspace) -> None:
     told = Typist(
-        ("call number", "left User 1, nobody"), ("nobody", "left User 1 and User 2"),
+        ("Call number", "left User 1, nobody"), ("nobody", "left User 1 and User 2"),
         ("User 2 has left", "end"), ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
     assert "nobody" in told and told.count("User 1 has left") == 1
@@ -283,6 +283,32 @@ def test_a_claim_asks_if_the_person_is_away(control: GameController, claim: Clai
     asked = needed_confirmation(claim, control)
     assert asked is not None and asked.kind == "claim away"
     assert (asked.command, asked.people) == (ClaimCard(2, claim.person), ("user2",))
+
+
+def test_a_claim_tells_whose_card_it_is_if_nobody_knew(workspace: Workspace) -> None:
+    control = (robot := Robot(workspace)).control
+    dealt = robot.world.cards.dealt
+    dealt.deal({"user1": 17})
+    control.apply(ClaimCard(31, "user2"))
+    assert dealt.given == {"user1": 17, "user2": 31}
+    doubt = dealt.doubt("user2", [44])  # the word of staff holds against the first card in sight
+    assert doubt is not None and (doubt.why, doubt.own) == ("other card", 31)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        ClaimCard(31, "user1"),  # who has another card
+        ClaimCard(17, "user2"),  # which is another person's
+        ClaimCard(10_000, "user2"),  # there is no such card
+        ClaimCard(31),
+    ],
+)
+def test_a_claim_changes_no_known_card(workspace: Workspace, claim: ClaimCard) -> None:
+    control = (robot := Robot(workspace)).control
+    robot.world.cards.dealt.deal({"user1": 17})
+    control.apply(claim)
+    assert robot.world.cards.dealt.given == {"user1": 17}
 
 
 def test_a_claim_by_name_is_of_the_persons_own_card(workspace: Workspace) -> None:

@@ -125,7 +125,7 @@ def test_an_answer_begun_before_its_question_is_dropped(desk: Desk) -> None:
     desk.lines.write("End the game?")
     desk.type("n\r")
     wait_until(lambda: desk.read == ["n\n"])
-    assert desk.shown == ["End the game?", "n"]
+    wait_until(desk.shows("End the game?", "n"))
 
 
 def test_lines_typed_at_once_come_one_by_one(desk: Desk) -> None:
