@@ -107,6 +107,8 @@ class PausingGames(JoiningGames):
             self.robot.release(everybody=True)
         self.going, self.paused_itself = True, False
         self.goes_on = self.goes_on or self.joined
+        if (fault := self.supervision.halted) is not None:
+            return [StaffNote("still halted", fault.name)]
         return [StaffNote("goes on")]
 
     def _one_step(self) -> list[Result]:

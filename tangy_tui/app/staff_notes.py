@@ -52,6 +52,7 @@ RefusalKind = Literal[
     "stopped first",
     "asks first",
     "halted first",
+    "still halted",
     "ends",
     "no game",
     "joining",

@@ -100,6 +100,7 @@ BY_KEYS: dict[NoteKind, str] = {
     "stopped": "STOP. Press {pause} to go on.",
     "stopped first": "Not now: {stopped}. Press {pause} to go on first.",
     "asks first": "Tangy is asking: answer first ({command} to type).",
+    "still halted": "A fault still halts Tangy: do what the dialog says.",
 }
 """Other words for staff who have keys, and type only to answer."""
 
@@ -230,6 +231,11 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"Tangy is asking: answer first{', or type: give back' if about else ''}."
         case "halted first":
             return "Not now: a fault halts Tangy. Type: what."
+        case "still halted":
+            return (
+                f"A fault still halts Tangy: {about}. "
+                "When all is well again, type: seen, and then: clear."
+            )
         case "ends":
             return "Tangy does not do that any more: you ended the game."
         case "no game":

@@ -369,6 +369,7 @@ def test_a_fault_halts_the_game_until_it_is_acknowledged_and_cleared(simulated: 
     while simulated.phase != "halted":
         assert not any(isinstance(event, GameEnded) for event in control.next())
     assert kinds(control.apply(OneStep())) == ["halted first"]
+    assert kinds(control.apply(GoOn())) == ["still halted"] and simulated.phase == "halted"
     assert kinds(control.apply(Clear())) == ["not seen yet"]
     assert kinds(control.apply(Acknowledge())) == ["Moved"]
     assert kinds(control.apply(Acknowledge())) == ["seen before"]
