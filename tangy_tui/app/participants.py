@@ -10,7 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, load_people, unaccented
-from tangy_profiles.reading import plain
+from tangy_profiles.reading import nearest, plain
 from tangy_profiles.room import Room, room_for
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
@@ -102,8 +102,11 @@ class Participants:
             return found[0]
         if found:
             raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
-        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess a person
-        raise TangyError(plain(f"There is nobody called {wanted!r}: {there}."))
+        typed, names = wanted.title(), {p.name for p in self.people}
+        meant = nearest(typed, names | {name.split()[0] for name in names})  # never guess a person
+        if not meant.startswith("did"):
+            meant = nearest(typed, names)
+        raise TangyError(plain(f"There is nobody called {wanted!r}: {meant}"))
 
     def rename(self, person: Person, name: str) -> None:
         """Give a person a new name that nobody else has.

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 
 SEEN_FIRST = "Press {acknowledge} first to say that you have seen this."
 SEEN = "You have seen it. Press {expert} to see whom to call, or {accept} when all is well."
+SEEN_REHEARSED = (
+    "You have seen it. Press {expert}: the simulated expert puts it right. Then press {accept}."
+)
+REHEARSED = "This is a rehearsal: {expert} lets the simulated expert put it right."
 WHEN_WELL = "Press {accept} when all is well."
 REACHED_TOO = "Press {reached} when you have reached them."
 SIMULATED = "The simulated expert has looked at it. Press {accept} when all is well."

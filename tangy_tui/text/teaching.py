@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.reading import nearest
 from tangy_tui.learning.early_ends import missed_end
 from tangy_tui.learning.teaching_events import (
@@ -178,7 +179,7 @@ def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
     if isinstance(event, NoRule):
         return _no_rule(event)
     rule = event if isinstance(event, Ruled) else event.rule
-    same = f"{activity.behaviour_words(rule.step.behaviour)}, {_whatever(rule.facts)}"
+    same = f"{activity.behaviour_words(rule.step.behaviour)}{_whatever(rule.facts, activity)}"
     covers = counted(len(rule.covers), "more situation")
     if isinstance(event, Ruled):
         return (
@@ -188,9 +189,9 @@ def rule_words(event: Ruled | RuleUndone | NoRule, activity: Activity) -> str:
     return f"The rule of step {rule.number} is taken back: {same}. The step stays."
 
 
-def ruled_step(step: str, facts: Sequence[str]) -> str:
+def ruled_step(step: str, facts: Sequence[str], activity: Activity) -> str:
     """Format a step that is a rule: its words, and the facts that make no difference."""
-    return f"{step} · rule: {_whatever(facts)}"
+    return f"{step} · rule{_whatever(facts, activity)}"
 
 
 RULE, NO_RULE = "make it a rule", "keep the step only"
@@ -205,14 +206,17 @@ def rule_words_asked(rule: Ruled, activity: Activity) -> tuple[str, str]:
         named[MOST_COVERED:] = [f"{more} more"]
     behaviour = activity.behaviour_words(rule.step.behaviour)
     return (
-        f"Always {behaviour}, {_whatever(rule.facts)}?",
+        f"Always {behaviour}{_whatever(rule.facts, activity)}?",
         f"Tangy then does the same in: {'; '.join(named)}.",
     )
 
 
-def _whatever(facts: Sequence[str]) -> str:
-    """Say that the values of some facts make no difference."""
-    return f"whatever the value of {listed(facts, 'or')}"
+def _whatever(facts: Sequence[str], activity: Activity) -> str:
+    """Say which facts make no difference, in the activity's words; "" if it has none."""
+    known = activity.declaration.facts if isinstance(activity, DeclaredActivity) else {}
+    words = [known[fact].words for fact in facts if fact in known]
+    told = [f"whether {listed(values, 'or')}" for values in words if values]
+    return f", no matter {listed(told)}" if told else ""
 
 
 def rule_question(step: Step, activity: Activity) -> str:
@@ -246,7 +250,7 @@ def _no_rule(event: NoRule) -> str:
         case "no step":
             return "Show a step first: a rule is about the last one."
         case "no facts":
-            return "No fact counts here, so there is nothing for a rule to leave out."
+            return "This step depends on nothing that changes, so you cannot make it a rule."
         case "all shown":
             return "Every situation that this covers has been shown already."
         case "not gone by":

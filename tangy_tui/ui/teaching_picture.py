@@ -122,7 +122,9 @@ class TeachingPicture:
                 words = arranged_words(self._teaching.activity, arranged, self._teaching.name)
                 self._log.write(words, "good")
             case Ruled() | RuleUndone() | NoRule():
-                self._log.write(text.rule_words(event, self._teaching.activity), "good")
+                refused = isinstance(event, NoRule)
+                words = text.rule_words(event, self._teaching.activity)
+                self._log.write(words, "warn" if refused else "good")
                 if not isinstance(event, NoRule):
                     self._rule(event)
             case StepUndone():
@@ -147,7 +149,9 @@ class TeachingPicture:
         activity, steps = self._teaching.activity, self._screen.query_one(Transcript)
         words = step_words(activity, rule.step, self._teaching.name)
         steps.remove_last()
-        steps.append(text.ruled_step(words, rule.facts) if isinstance(event, Ruled) else words)
+        steps.append(
+            text.ruled_step(words, rule.facts, activity) if isinstance(event, Ruled) else words
+        )
 
     def step(self, event: Executed) -> None:
         """Show a completed step."""

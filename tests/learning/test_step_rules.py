@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.declared.situations import seen_facts
 from tangy_tui.app.teaching_grammar import read_teaching
 from tangy_tui.app.workspace import Workspace
@@ -23,6 +25,7 @@ from tangy_tui.learning.teaching_events import (
     Undo,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
+from tangy_tui.text.teaching import rule_words, rule_words_asked
 from tests.support.teaching import taught_until
 
 STAGE = "listen"
@@ -119,7 +122,7 @@ def test_a_typed_rule_is_only_made_after_a_yes(
     asks = ConfirmingTeacher(teaching, TypedYes(terminal=True, setting="y"), written.append)
     rule = SameWhatever(("clock",))
     assert asks.ask(rule) is None and asks.open
-    assert "whatever the value of clock?" in written[0]
+    assert "value" not in written[0] and "clock" not in written[0].partition("?")[0]
     assert read_library(workspace.store, "trivia").resolutions == ()
     would = teaching.rules.would(teaching.demonstration, rule)
     assert isinstance(would, Ruled)
@@ -150,3 +153,24 @@ def test_a_line_after_a_rule_of_a_script_that_answers_nothing_is_a_command(
     assert asks.ask(SameWhatever(("clock",))) is not None
     assert not asks.takes("2") and not asks.takes("n")
     assert asks.ask(SameWhatever(("weather",))) is not None and not asks.takes("n"), "no rule"
+
+
+def test_a_rule_names_facts_by_the_words_of_the_activity_and_leaves_others_out(
+    teaching: TeachingSession,
+) -> None:
+    activity = teaching.activity
+    assert isinstance(activity, DeclaredActivity)
+    facts = dict(activity.declaration.facts)
+    facts["clock"] = replace(facts["clock"], words=())
+    facts["hinted"] = replace(facts["hinted"], words=("no hint yet", "a hint was given"))
+    told = replace(activity, declaration=replace(activity.declaration, facts=facts))
+    rule = teaching.rules.would(teaching.demonstration, SameWhatever(("clock", "hinted")))
+    assert isinstance(rule, Ruled)
+    question, _ = rule_words_asked(rule, told)
+    assert question.endswith(", no matter whether no hint yet or a hint was given?")
+    assert "clock" not in question
+
+
+def test_a_step_that_cannot_be_a_rule_is_refused_in_plain_words(tmp_path: Path) -> None:
+    activity = Workspace(tmp_path).activity
+    assert "depends on nothing that changes" in rule_words(NoRule("no facts"), activity)

@@ -51,7 +51,10 @@ async def test_a_critical_fault_is_cleared_step_by_step(
         await pilot.press("r")
         await pilot.pause()
         assert "Press a first" in seen(pilot)
-        await pilot.press("a", "r")
+        await pilot.press("a")
+        await pilot.pause()
+        assert "the simulated" in seen(pilot)
+        await pilot.press("r")
         await pilot.pause()
         assert "It is still there." in seen(pilot)
         assert game.halted is fault

@@ -41,7 +41,7 @@ async def test_facts_below_the_last_line_are_not_counted_as_people(run: Run) -> 
     async with run(Panel(), size=(80, 24)) as pilot:
         panel = pilot.app.screen.query_one(StaffPanel)
         panel.styles.height = 5
-        panel.show("B7", "Next: call number.", ["1:01 so far", "a call every 30 s"], people)
+        panel.show("", "Next: call number.", [f"fact {n}" for n in range(5)], people)
         await pilot.pause()
         assert panel.border_subtitle == "12 more: ↓"
 
@@ -114,3 +114,14 @@ async def test_the_title_tells_what_tangy_said_as_far_as_there_is_room(run: Run)
         assert told.startswith(f"Tangy said: {words}")
         panel.show("B7", "Next: call number.", [], [])
         assert str(panel.border_title) == "Now"
+
+
+async def test_a_low_panel_writes_the_call_in_words_and_shows_people(run: Run) -> None:
+    people = [(f"User {number}", "asks 2 min", "warn") for number in range(1, 13)]
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.styles.height = 4  # as while Tangy asks in a small window
+        panel.show("O-66", "Tangy waits for your answer.", ["1 called", "0:15 so far"], people)
+        await pilot.pause()
+        assert "O-66   1 called, 0:15 so far" in pilot.text() and "█" not in pilot.text()
+        assert pilot.text().count("asks 2 min") >= 4

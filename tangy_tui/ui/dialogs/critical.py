@@ -130,7 +130,7 @@ class CriticalDialog(Dialog[None]):
         """Lay out the status line, which stays visible, and the fault with its keys."""
         yield StatusLine(self._status)
         fault = self._fault
-        said = halts.SEEN if fault.acknowledged else halts.SEEN_FIRST
+        said = self._seen if fault.acknowledged else halts.SEEN_FIRST
         box = Vertical(
             Page(self._write),
             Static(self._is_there(), classes="now", markup=False),
@@ -141,6 +141,10 @@ class CriticalDialog(Dialog[None]):
         )
         box.border_title = self._title()
         yield box
+
+    @property
+    def _seen(self) -> str:
+        return halts.SEEN_REHEARSED if self._desk.simulated else halts.SEEN
 
     def _title(self) -> Content:
         return Content(clean(halts.title(known_now(self._fault, self._desk.supervision))))
@@ -253,7 +257,7 @@ class CriticalDialog(Dialog[None]):
         match key:
             case "acknowledge":
                 desk.acknowledge()
-                self.say(halts.SEEN)
+                self.say(self._seen)
             case "expert":
                 restarts = desk.restarts
                 if not self._called:
@@ -335,6 +339,8 @@ class CriticalDialog(Dialog[None]):
             lines += paragraph(clean(halts.last_move_words(fault, fault.moves[-1])), width, "dim")
         lines += heading(halts.WHOM_TO_CALL)
         lines += advice_lines(fault.advice, width)
+        if self._desk.simulated:
+            lines += paragraph(with_keys(halts.REHEARSED, keymap_of(self.app)), width, "strong")
         lines += paragraph(clean(advised_call(supervision)), width)
         if staff := staff_words(supervision):
             lines += paragraph(clean(staff), width)

@@ -45,7 +45,7 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
     """Show a view on the staff panel, and its calls on the board."""
     label = shown.world.activity.deck.label
     board.show(view.called)
-    call = label(view.called[-1]).replace("-", "") if view.called else ""
+    call = label(view.called[-1]) if view.called else ""
     columns = () if board.display else shown.world.activity.deck.columns
     panel.show(
         call,

@@ -190,7 +190,10 @@ class StaffPanel(RowView, can_focus=True):
     def _block(self, width: int, height: int) -> list[Row]:
         """Draw the call in blocks, and the facts beside it."""
         large = width >= LARGE_WIDTH and height >= LARGE_HEIGHT
-        drawn = block_rows(self._call, large) if self._call else [""] * min(5, len(self._facts))
+        call = self._call.replace("-", "")
+        drawn = block_rows(call, large) if call else [""] * min(5, len(self._facts))
+        if call and height < len(drawn) + 2:  # digits cut in half tell nothing
+            return [self._in_words(width)]
         beside = max((cell_len(row) for row in drawn), default=0)
         if self._board and height >= BOARD_HEIGHT and width - beside > BOARD:
             return self._with_board(drawn, beside, width)
@@ -207,6 +210,13 @@ class StaffPanel(RowView, can_focus=True):
             room = width - beside - 1
             rows.append(((fit(block, beside + 1), "robot"), (shorten(fact, room), "text")))
         return rows
+
+    def _in_words(self, width: int) -> Row:
+        """Write the call and as many facts as fit on one line."""
+        facts = _fitting(self._facts, 0)
+        while facts and cell_len(", ".join(facts)) > width - cell_len(self._call) - 3:
+            facts.pop()
+        return ((f"{self._call}   ", "robot"), (", ".join(facts), "text"))
 
     def _with_board(self, drawn: Sequence[str], beside: int, width: int) -> list[Row]:
         """Draw the board beside the call, and the facts below both."""
