@@ -16,6 +16,7 @@ from tangy_tui.app.inquiry_grammar import (
 )
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.whose_turn import present_moment
 from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
@@ -35,7 +36,7 @@ from tangy_tui.text.staff_lines import (
 )
 from tangy_tui.text.staff_view import person_words, time_words
 from tangy_tui.text.times import local_now
-from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, why_now_lines
+from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, held_words, why_now_lines
 
 HELP = "You can type at any time:"
 
@@ -84,7 +85,7 @@ class Inquiries:
             case "why":
                 return self._why()
             case "what to do":
-                return advice_lines(self._game) or [NOTHING_WRONG]
+                return advice_lines(self._game) or self._nothing_wrong()
             case "faults":
                 return earlier_fault_lines(self._before, self._game.faults)
             case "patterns":
@@ -103,6 +104,11 @@ class Inquiries:
         if word in ("undo", "redo"):
             return [nothing_to(word)]
         return None
+
+    def _nothing_wrong(self) -> list[str]:
+        """Tell that nothing is wrong, and what holds the game if something does."""
+        held = "" if self._game.over else held_words(present_moment(self._controller))
+        return [NOTHING_WRONG, held] if held else [NOTHING_WRONG]
 
     @property
     def _before(self) -> EarlierPart | None:

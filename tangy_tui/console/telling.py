@@ -11,7 +11,14 @@ from tangy_tui.app.game_commands import ClaimCard, GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.in_progress import ProgressLines
-from tangy_tui.interaction.game_events import Acted, DoneOnce, GameEnded, ResumedGame, Taught
+from tangy_tui.interaction.game_events import (
+    Acted,
+    DoneOnce,
+    GameChanged,
+    GameEnded,
+    ResumedGame,
+    Taught,
+)
 from tangy_tui.learning.verification import NotUnderstood, Verification
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text import staff_lines
@@ -66,6 +73,7 @@ class GameTelling:
         answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
         game = self._controller.supervision
         events: list[Event] = []
+        taken_back = any(isinstance(e, StaffNote) and e.kind == "call taken back" for e in told)
         for one in told:
             if isinstance(one, StaffNote):
                 self.tell_lines([noted_words(one, self._name)])
@@ -82,7 +90,9 @@ class GameTelling:
                     one, game, self._name, answered,
                     goes_on=on, stopped=self._controller.stopped, ends=self._controller.ending,
                 )  # fmt: skip
-                if isinstance(one, Acted):
+                if isinstance(one, GameChanged) and one.what == "taken back" and taken_back:
+                    lines = lines[1:]  # staff were told so
+                elif isinstance(one, Acted):
                     lines = self._progress.step(one, lines)
                 elif isinstance(one, ResumedGame):
                     lines = [*lines, *self._progress.resumed()]

@@ -131,7 +131,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "calls again soon":
             return waits_words(CallAgain(), name)
         case "call taken back":
-            return f"{about} counts as not called."
+            return f"{about} counts as not called, and comes again later."
         case "pace":
             spoken = ", or as soon as it has spoken" if float(about) < SPOKEN_SECONDS else ""
             return f"Tangy calls every {about} seconds{spoken}."

@@ -138,7 +138,8 @@ def early_words(ended: GameEnded) -> str:
 
 def paused_lines(count: int, seconds: float) -> list[str]:
     """Tell how often the robot waited for late data, and for how many s, if it did."""
-    return [f"It waited for late data {often(count)}, for {seconds:.1f} s in all."] if count else []
+    told = f"The robot waited for late data {often(count)}, for {seconds:.1f} s in all."
+    return [told] if count else []
 
 
 NEVER_ASKED = "Tangy does not know yet what works with {people}: it has asked them for nothing."

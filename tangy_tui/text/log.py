@@ -14,7 +14,7 @@ from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Momen
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.calls import logged_words
 from tangy_tui.text.changes import changed_words
-from tangy_tui.text.endings import TO_ITS_END, ending_sentence, ending_words
+from tangy_tui.text.endings import TO_ITS_END, ending_sentence
 from tangy_tui.text.fault_moves import RECOVERY_WORDS, move_words
 from tangy_tui.text.numbers import counted, of_times, often
 from tangy_tui.text.player_facts import (
@@ -76,7 +76,7 @@ def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> I
         yield "An older Tangy kept no times within a game: what is given is the time of day alone."
     for moment in replay.moments:
         yield from moment_lines(moment, replay.timed, activity, name)
-    yield f"{counted(game.steps, 'step')}; {ending_words(game)}"
+    yield f"{counted(game.steps, 'step')}. {ending_sentence(game)}"
 
 
 def moment_lines(

@@ -126,7 +126,11 @@ def test_a_call_is_taken_back_only_after_a_yes(workspace: Workspace) -> None:
         ("Call number", "take back"), ("Take ", "n"), ("Call number", "take back"), ("Take ", "y"),
         ("counts as not called", "end"), ("End the game?", "y"),
     ).plays(workspace)  # fmt: skip
-    assert "counts as not called" not in told.split("Not done.")[0]
+    before, after = told.split("Not done.")
+    assert "counts as not called" not in before
+    assert after.count("counts as not called, and comes again later.") == 1
+    assert "is taken back" not in after, "one sentence tells it"
+    assert "Tangy says: I take" in after
 
 
 def test_a_script_is_asked_nothing(workspace: Workspace) -> None:

@@ -90,6 +90,12 @@ def test_a_game_plays_to_its_end_after_the_last_line(workspace: Workspace) -> No
     assert any("The game is over" in line for line in written)
 
 
+def test_what_to_do_in_a_paused_game_is_to_let_it_go_on(workspace: Workspace) -> None:
+    written, _ = told(workspace, "pause", "what", "end")
+    at = written.index("Nothing is wrong.")
+    assert written[at + 1].startswith("The game is paused. Tangy does nothing until you")
+
+
 def test_the_last_messages_are_told_again_with_their_times(workspace: Workspace) -> None:
     written, _ = told(workspace, "pause", "messages", "end")
     at = [line for line in written if re.fullmatch(r"\d\d:\d\d:\d\d Paused: .*", line)]

@@ -197,7 +197,7 @@ def test_a_new_person_joins_a_live_game_by_lines(folder: Path) -> None:
     assert done.returncode == 0, done.stderr
     joined, resumed = done.stdout.split("Berta has joined.")
     assert "Berta joins: seat 5." in joined and "is paused" not in joined
-    assert " call number" in resumed and "You ended the game." in resumed
+    assert "Call number" in resumed and "You ended the game." in resumed
     assert f"tangy report --data {folder}" in " ".join(resumed.split())
     with Store.open(folder, write=False) as store:
         did = [(e.body["did"], e.body["by"]) for e in store.events("staff action")]
