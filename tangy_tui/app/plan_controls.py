@@ -314,18 +314,23 @@ class GamePlanControls:
     def _choose(self, world: PlannedGame, names: tuple[str, ...]) -> list[Result]:
         rules = world.activity.rules
         patterns = tuple(rules.pattern(name).name for name in names)
-        labels = [rules.pattern(name).label for name in patterns]
+        labels, already = [rules.pattern(name).label for name in patterns], ""
         if self._idle:
             world.choose(replace(world.game_plan, patterns=patterns))
         else:
-            now, follow = world.patterns, patterns
-            if rules.pattern(patterns[0]).on(now.deck) == now.played:
-                follow = patterns[1:]  # the first is being played already
-            elif now.present is not None:
-                labels.insert(0, now.present.label)
+            now = world.patterns
+            follow = tuple(
+                one for one in patterns if rules.pattern(one).on(now.deck) != now.played
+            )  # what is played already stays the first
+            labels = [rules.pattern(one).label for one in follow]
+            begun = [one for one in patterns if one not in follow][:1]
+            present = rules.pattern(begun[0]) if begun else now.present
+            if present is not None:
+                labels.insert(0, present.label)
+                already = "" if begun[:1] == [patterns[0]] else present.label
             self._supervision.game.change("patterns chosen", patterns=follow, by=self._by)
         self._note("patterns", detail=", ".join(patterns))
-        return [StaffNote("patterns", ", then ".join(labels))]
+        return [StaffNote("patterns", ", then ".join(labels), already)]
 
     def _let_win(
         self, world: PlannedGame, several: bool | None, visits: bool | None

@@ -148,7 +148,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             before = "".join(f" It counted as {name(one)}'s until now." for one in noted.people)
             return f"{name(about)} has card {noted.words}.{before}"
         case "patterns":
-            return f"Played for: {about}."
+            already = f" It is played for {noted.words} already." if noted.words else ""
+            return f"Played for: {about}.{already}"
         case "several":
             return "Everybody who has the pattern at the same call wins."
         case "one winner":

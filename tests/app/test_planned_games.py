@@ -204,6 +204,16 @@ def test_the_pattern_being_played_does_not_follow_itself(
     assert [one.name for one in planned.world.patterns.left] == ["two lines"]
 
 
+def test_what_is_played_now_stays_the_first_wherever_it_is_named(planned: Planned) -> None:
+    planned.begin(GamePlan(("full card",)))
+    planned.play(calls=2)
+    chosen = planned.control.apply(ChoosePatterns(("two lines", "full card")))
+    assert chosen == [StaffNote("patterns", "the full card, then two lines", "the full card")]
+    assert [one.name for one in planned.world.patterns.left] == ["two lines"]
+    chosen = planned.control.apply(ChoosePatterns(("full card", "line")))
+    assert chosen == [StaffNote("patterns", "the full card, then a line")]
+
+
 def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> None:
     planned.begin(GamePlan())
     planned.play(calls=2)
