@@ -42,17 +42,21 @@ class SwitchingOn(Generic[Opened]):
         """Why it did not come on, for people to read; empty: it is on, or was cancelled."""
 
     def open(self) -> Opened:
-        """Switch the robot on, which takes seconds.
+        """Switch the robot on, which takes seconds; after an error it can be tried again.
 
         Raises:
             Cancelled: it was cancelled; nothing is on.
             TangyError: it cannot be switched on.
         """
-        self._cancellation.check()
-        with ExitStack() as opened:
-            world = opened.enter_context(self._opening(self._stepped, self._cancellation))
-            self._cancellation.complete()
-            self._opened = opened.pop_all()
+        try:
+            self._cancellation.check()
+            with ExitStack() as opened:
+                world = opened.enter_context(self._opening(self._stepped, self._cancellation))
+                self._cancellation.complete()
+                self._opened = opened.pop_all()
+        except BaseException:
+            self._cancellation = Cancellation()  # people may switch it on once more
+            raise
         return world
 
     @property

@@ -70,9 +70,18 @@ def test_a_cancelled_opening_closes_the_robot() -> None:
         one.open()
     caller.join()
     assert robot.did == ["begins", "is off"]
+
+
+def test_a_cancelled_robot_can_be_switched_on_again() -> None:
+    robot = Robot()
+    one = SwitchingOn(robot)
+    one.cancel()  # before it begins
     with pytest.raises(Cancelled):
         one.open()
-    assert robot.did == ["begins", "is off"]
+    assert robot.did == []
+    robot.answers.set()
+    assert one.open() is WORLD
+    assert robot.did == ["begins", "is on"]
 
 
 @pytest.fixture
