@@ -51,7 +51,7 @@ class ClaimNow:
     game: str = ""
     """The id of the game."""
     goes: bool = False
-    """Whether Tangy goes to the person because of it."""
+    """Whether Tangy goes to the person because of it; not yet while it finishes its step."""
 
 
 class GamePlanControls:

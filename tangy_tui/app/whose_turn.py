@@ -77,6 +77,8 @@ class GameMoment:
     """Whether Tangy waits for the time of the next call."""
     won: bool = False
     """Whether somebody has won, and the game only has to end or go on for another pattern."""
+    plays_on: str = ""
+    """The label of the pattern for which the game goes on after a win; "": none is left."""
     turns: tuple[str, ...] = ()
     """The people in the order of their turns, whose turn it is first; () if nobody takes turns."""
     decision: Decision | None = None
@@ -164,7 +166,14 @@ def _with_plan(moment: GameMoment, game: PlannedGame) -> GameMoment:
         unvisited=game.activity.rules.unvisited if game.game_plan.visits else 0,
         looking=game.looking,
         won=game.tracker.finished,
+        plays_on=plays_on(game),
     )
+
+
+def plays_on(game: PlannedGame) -> str:
+    """Return the label of the pattern for which the game goes on after a win; "" if for none."""
+    left = game.patterns.left if game.tracker.finished else ()
+    return left[0].label if left else ""
 
 
 def _holder(control: GameController) -> tuple[Holder, str]:

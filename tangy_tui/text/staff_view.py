@@ -10,6 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.game_rules import Patterns
 from tangy_profiles.state import ActivityState
 from tangy_tui.app.game_commands import Autonomy
+from tangy_tui.app.plan_controls import ClaimNow
 from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words
@@ -154,14 +155,22 @@ def you_say_words(typed: str) -> str:
     return f"Tangy finishes this first. Then you say: {typed}" if typed else YOU_SAY
 
 
-def goes_by_claim_words(name: str) -> str:
-    """Tell that Tangy goes to the person whose card wins by a claim."""
-    return f"Next: go to {name} ({CLAIM_FIRST})."
+def settled_words(
+    claim: ClaimNow | None, pattern: str, name: Callable[[str], str]
+) -> tuple[str, str]:
+    """Tell the next step if it is settled, whatever Tangy would decide, and about whom it is.
 
+    Both are "" if it is not. Staff read the same on the panel and if they ask why.
 
-def plays_on_words(pattern: str) -> str:
-    """Tell that the game goes on for the next pattern after a win."""
-    return f"Somebody has won. Next: the game goes on for {pattern}."
+    Args:
+        claim: the last claim, while it is news.
+        pattern: the label of the pattern for which the game goes on after a win; "" for none.
+        name: returns a person's name for an id.
+    """
+    # Not `claim.goes`: that begins only when Tangy has finished its present step.
+    if claim is not None and claim.kind == "claim right" and claim.person:
+        return f"Next: go to {name(claim.person)} ({CLAIM_FIRST}).", claim.person
+    return f"Somebody has won. Next: the game goes on for {pattern}." if pattern else "", ""
 
 
 def calls_first_words(calls: int, then: str) -> str:

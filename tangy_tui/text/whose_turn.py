@@ -14,7 +14,14 @@ from tangy_tui.text.control import claimed_words, noted_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import moment_words
-from tangy_tui.text.staff_view import OVER, STEP_SECONDS, lasting_words, next_words, welcomes_words
+from tangy_tui.text.staff_view import (
+    OVER,
+    STEP_SECONDS,
+    lasting_words,
+    next_words,
+    settled_words,
+    welcomes_words,
+)
 from tangy_tui.text.times import local_now
 
 if TYPE_CHECKING:
@@ -125,6 +132,11 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
         return f"{looks} What it does next depends on that.", moment.looking
     if near is not None and near.state == "comes":
         return f"{_on_its_way(moment)} {name(near.id)}{_because(moment, near, name)}.", near.id
+    settled, goes_to = settled_words(moment.claim, moment.plays_on, name)
+    if goes_to:
+        return f"Tangy goes to {name(goes_to)} next, because of the claim.", goes_to
+    if settled:
+        return settled, ""
     behaviour = activity.behaviours.get(decision.behaviour)
     if not decision.sure or behaviour is None:
         return "Nobody has shown Tangy what to do next, so it will ask you.", ""

@@ -14,6 +14,7 @@ from tangy_tui.app.plan_controls import CLAIM_SECONDS
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.staff_view import person_words
+from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, news_line, next_line
 from tests.app.test_interruption import Robot
 from tests.app.test_planned_games import Planned
@@ -102,6 +103,7 @@ def test_a_claim_that_wins_is_news_until_tangy_is_there(robot: Robot) -> None:
     plan.say_early(ClaimCard(17, "user3"))  # while Tangy carries out its step
     assert news_line(shown).startswith(f"Card 17 ({name}) wins. Tangy finishes this")
     assert next_of(robot) == goes
+    assert goes in why_now_lines(robot.control, robot.workspace.name)
     robot.control.apply(ClaimCard(17, "user3"))
     assert news_line(shown) == f"Card 17 ({name}) wins. Tangy goes there next."
     assert next_of(robot) == goes

@@ -46,6 +46,7 @@ from tangy_tui.text.control import noted_words
 from tangy_tui.text.log import moment_lines, replay_lines, session_lines
 from tangy_tui.text.report import changes_lines
 from tangy_tui.text.staff_report import staff_rows
+from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, next_line
 
 
@@ -164,6 +165,7 @@ def test_after_a_win_staff_read_that_the_game_goes_on(planned: Planned) -> None:
     line = next_line(ViewSource(planned.world, planned.control, 0, str))
     assert planned.world.patterns.left[0].label in line
     assert planned.world.activity.behaviours["valediction"].question not in line
+    assert line in why_now_lines(planned.control, str)
 
 
 def test_cards_in_play_are_those_of_people_who_are_here(planned: Planned) -> None:

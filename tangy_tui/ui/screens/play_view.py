@@ -10,6 +10,7 @@ from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.readiness import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
+from tangy_tui.app.whose_turn import plays_on
 from tangy_tui.text import staff_view as text
 from tangy_tui.text.control import claimed_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
@@ -87,14 +88,11 @@ def next_line(shown: ViewSource) -> str:
     planned = as_planned(world)
     found = next_step(world, control.supervision.policy)
     calls_first = 0 if planned is None else planned.tracker.calls_first
-    words, claimed = "", control.plan.claim
-    if claimed is not None and claimed.kind == "claim right" and claimed.person:
-        words = text.goes_by_claim_words(shown.name(claimed.person))
-    elif planned is not None and planned.tracker.finished and planned.patterns.left:
-        words = text.plays_on_words(planned.patterns.left[0].label)
-    elif planned is not None and planned.looking:
+    pattern = "" if planned is None else plays_on(planned)
+    words, _ = text.settled_words(control.plan.claim, pattern, shown.name)
+    if not words and planned is not None and planned.looking:
         words = text.looks_words(shown.name(planned.looking), world.activity.object)
-    elif found is not None:
+    elif not words and found is not None:
         words = text.next_words(
             world.activity,
             *found,
@@ -104,7 +102,9 @@ def next_line(shown: ViewSource) -> str:
             claims=planned.vouched if planned else (),
             waits=control.robot.rests(found[0]),
         )
-    elif shown.said:  # if the next step is unknown, staff need to know the last question
+    elif (
+        not words and shown.said
+    ):  # if the next step is unknown, staff need to know the last question
         words = text.said_words(shown.said)
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
