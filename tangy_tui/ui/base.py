@@ -244,3 +244,9 @@ async def perform(screen: Screen[Any], id: str, on: bool | None = None) -> None:
     if id == "listen" and on is not None and (app.hearing is None or app.hearing.on == on):
         return
     await screen.run_action(f"app.{ACTIONS.get(id, id)}")
+
+
+def give_keys_back(screen: Screen[Any], widget: Widget | None) -> None:
+    """Focus a widget of a screen, unless another one has the focus by now."""
+    if screen.focused is None and widget is not None and widget.is_attached:
+        screen.set_focus(widget)

@@ -410,6 +410,7 @@ async def test_esc_returns_the_choice_to_tangy(run: Run, program: Program) -> No
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps > steps)
         assert not live(pilot).control.supervision.over and live(pilot).is_active
         assert not live(pilot).query(AskingPanel)
+        await until_shown(pilot, lambda: isinstance(live(pilot).focused, StaffPanel))  # it scrolls
         assert not live(pilot).control.taking_over
 
 

@@ -39,7 +39,7 @@ from tangy_tui.text import questions as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.refusals import not_understood_words, refused_words
 from tangy_tui.text.situations import ALL_RIGHT
-from tangy_tui.ui.base import Dialog, perform
+from tangy_tui.ui.base import Dialog, give_keys_back, perform
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
@@ -155,15 +155,17 @@ class AskingPanel(Vertical):
 
         With push-to-talk, the screen keeps the focus.
         """
+        self._had_keys = self.screen.focused
         self._take_keys()
         self.set_timer(SETTLE_SECONDS, self._ready)
         if self._hearing is not None:
             self._hearing.attend(self)
 
     def on_unmount(self) -> None:
-        """Stop listening."""
+        """Stop listening, and let the panel that had the focus take keys again."""
         if self._hearing is not None:
             self._hearing.leave(self)
+        self.screen.call_later(give_keys_back, self.screen, self._had_keys)
 
     @property
     def _by_key(self) -> bool:
