@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from datetime import datetime
+from datetime import datetime, timedelta
 
 from tangy_profiles.game_records import MoveKind
 from tangy_tui.monitoring.fault import Diagnosed, FaultEvent
@@ -32,6 +32,15 @@ def fault_message(event: FaultEvent) -> str:
     if not isinstance(event, Diagnosed) and event.move.kind in GONE:
         return f"{event.fault.name}: this fault has gone."
     return one_sentence(event, fault_lines(event))
+
+
+def fault_at(event: FaultEvent) -> datetime | None:
+    """Return when a fault was found, or changed (local time); None if that is not known."""
+    fault, found = event.fault, isinstance(event, Diagnosed)
+    if not fault.at or not (found or fault.real_time):
+        return None
+    later = 0.0 if isinstance(event, Diagnosed) else event.move.seconds - fault.seconds
+    return (datetime.fromisoformat(fault.at) + timedelta(seconds=later)).astimezone()
 
 
 def one_sentence(event: object, lines: Sequence[str]) -> str:

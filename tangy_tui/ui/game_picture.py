@@ -45,12 +45,12 @@ from tangy_tui.text.games import (
 )
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.learnt import replay_words
-from tangy_tui.text.messages import GONE, fault_message
+from tangy_tui.text.messages import GONE, fault_at, fault_message
 from tangy_tui.text.situations import OVER_NOW, lesson_words, moment_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.keys import keymap_of
-from tangy_tui.ui.message_history import remember
+from tangy_tui.ui.message_history import date_last, remember
 from tangy_tui.ui.reasons import DecisionGround, why_asked, why_now, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import Kind, LogView
@@ -309,6 +309,7 @@ def write_fault(screen: Screen[Any], event: FaultEvent, *, shows_end: bool = Fal
     if isinstance(event, Diagnosed):
         log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)
         remember(screen.app, fault_message(event))
+        date_last(screen.app, fault_at(event))
         return
     move = event.move
     if move.kind in ENDINGS:
@@ -322,3 +323,4 @@ def write_fault(screen: Screen[Any], event: FaultEvent, *, shows_end: bool = Fal
         screen.notify(fault_message(event), markup=False)
     else:
         remember(screen.app, fault_message(event))
+    date_last(screen.app, fault_at(event))

@@ -78,3 +78,9 @@ def remember(app: object, sentence: str) -> None:
     keep = getattr(app, "remember", None)
     if keep is not None:
         keep(sentence)
+
+
+def date_last(app: object, at: datetime | None) -> None:
+    """Give the last message the time at which it happened: a screen may tell it only later."""
+    if at is not None and isinstance(app, MessageHistoryApp):
+        app.told[-1] = at, app.told[-1][1]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 from typing import Any
 
 from tangy_tui.monitoring.fault import Diagnosed, Moved, RecoveryEvent
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import write_fault
+from tangy_tui.ui.message_history import MessageHistoryApp
 
 
 class Screen:
@@ -38,7 +40,7 @@ class Screen:
 def test_a_fault_is_a_message_and_its_end_is_shown() -> None:
     screen: Any = Screen()
     covered: Any = SimpleNamespace(
-        asks_only=False, critical=False, name="Laser scanner covered", console="Uncover it."
+        asks_only=False, critical=False, name="Laser scanner covered", console="Uncover it.", at=""
     )
     covered.why = "it sees nothing"
     asked = RecoveryEvent("asked", 1.0, attempt=1, speech="Could somebody help?")
@@ -50,6 +52,20 @@ def test_a_fault_is_a_message_and_its_end_is_shown() -> None:
         "Laser scanner covered: asked for help. Tangy says: Could somebody help?",
     ]
     assert screen.notified == ["Laser scanner covered: this fault has gone."]
+
+
+def test_a_message_of_a_fault_has_the_time_at_which_it_was_found() -> None:
+    app = MessageHistoryApp()
+    screen: Any = Screen()
+    screen.app, screen.notify = app, lambda words, **_: app.remember(words)
+    covered: Any = SimpleNamespace(
+        asks_only=False, critical=False, name="Laser scanner covered", console="Uncover it.",
+        why="it sees nothing", at="2026-11-28T09:00:00+00:00", seconds=60.0, real_time=True,
+    )  # fmt: skip
+    write_fault(screen, Diagnosed(covered), shows_end=True)
+    write_fault(screen, Moved(covered, RecoveryEvent("recovered", 75.0)), shows_end=True)
+    found = datetime(2026, 11, 28, 9, 0, tzinfo=UTC)
+    assert [at for at, _ in app.told] == [found, found + timedelta(seconds=15)]
 
 
 def test_the_words_are_shown_while_tangy_still_speaks() -> None:

@@ -14,7 +14,7 @@ from tangy_tui.ui.widgets.page import PageLine, heading, paragraph
 
 
 class MessagesDialog(PageDialog):
-    """The last messages, the newest first, with the time at which each was shown."""
+    """The last messages, the newest first, with the time at which each was shown, or happened."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,exclamation_mark", "close", "Close", key_display="esc"),
@@ -30,12 +30,12 @@ class MessagesDialog(PageDialog):
         """Create the dialog.
 
         Args:
-            told: the messages with their times, the oldest first.
+            told: the messages with their times.
             heading: the heading above the messages before an interruption.
             before: these messages.
         """
         super().__init__(text.TITLE, text.KEYS)
-        self._told = tuple(reversed(told))
+        self._told = sorted(told, key=lambda one: one[0])[::-1]
         self._heading, self._before = heading, tuple(reversed(before))
 
     def write(self, width: int) -> list[PageLine]:
