@@ -86,7 +86,7 @@ class GamePicture:
         """Returns the scene to show."""
         self.over: Callable[[], str] = lambda: OVER_NOW
         """Returns the stage while no game runs."""
-        self._stage = ""
+        self._stage = self._spoken = ""
         self._step: int | None = None
         self._game: int | None = None
         self._screen = screen
@@ -107,6 +107,14 @@ class GamePicture:
         if planned is not None and planned.said:  # also while it speaks, and besides its steps
             return planned.said
         return self.grounds[-1].acted.speech if self.grounds else ""
+
+    def show_speech(self) -> None:
+        """Show what the robot says besides its steps, such as the answer to a claim."""
+        planned = as_planned(self._supervision.world)
+        said = "" if planned is None else planned.said
+        if said != self._spoken:
+            self._spoken = said
+            self._screen.query_one(RoomView).say(said)
 
     def begin(self) -> None:
         """Show the state before the first game."""

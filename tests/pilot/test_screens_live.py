@@ -127,6 +127,7 @@ async def test_a_waiting_command_is_reported_at_once_and_with_its_result(
         link.free = False
         try:
             await until_shown(pilot, lambda: live(pilot).working > 0)
+            live(pilot).world.pace = 300.0
             await pilot.press("colon", *"bingo 2", "enter")
             await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
             await pilot.press(*"not know", "enter")
@@ -134,6 +135,9 @@ async def test_a_waiting_command_is_reported_at_once_and_with_its_result(
         finally:
             link.free = True
         await until_shown(pilot, lambda: "Card 2 does not win" in screen_text(pilot.app))
+        room = live(pilot).query_one(RoomView)  # it no longer says the number
+        await until_shown(pilot, lambda: room.speech == live(pilot).world.said)
+        assert "number is" not in room.speech
 
 
 @pytest.mark.slow

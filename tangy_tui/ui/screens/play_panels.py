@@ -177,6 +177,7 @@ class PlayPanels(TangyScreen[Tally]):
             self._source(),
         )
         self.picture.show_stage()
+        self.picture.show_speech()
 
     def _seen_since(self) -> bool:
         """Whether the room lacks what the robot has seen since it was drawn, during a step."""
