@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from pathlib import Path
 
@@ -12,6 +13,7 @@ LATIN = str.maketrans(
     {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "æ": "ae", "œ": "oe", "ø": "oe", "ł": "l"}
 )
 """Letters of file names that are more than a plain letter with an accent."""
+CURLY = "\N{LEFT DOUBLE QUOTATION MARK}\\1\N{RIGHT DOUBLE QUOTATION MARK}"
 TENS = ("thirty", "forty", "fifty", "sixty", "hundred")
 
 
@@ -35,9 +37,14 @@ def listed_answers(text: str) -> list[str]:
 
 
 def kept(text: str, quotes: bool) -> str:
-    """Return a line without the characters that mean something in the activity's files."""
-    dropped = "\\{}|" if quotes else '"\\{}|'
-    return " ".join("".join(c for c in plain(text) if c not in dropped).split())
+    """Return a line without the characters that mean something in the activity's files.
+
+    Without `quotes`, straight ones become curly, which mean nothing there.
+    """
+    line = "".join(c for c in plain(text) if c not in "\\{}|")
+    if not quotes:
+        line = re.sub(r'"([^"]*)"', CURLY, line).replace('"', "")
+    return " ".join(line.split())
 
 
 def is_file(path: Path) -> bool:

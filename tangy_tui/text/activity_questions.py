@@ -16,6 +16,7 @@ BEGIN = (
 )
 ANSWER = "> "
 BACK = ("back", "go back")
+OR_BACK = "Type back to return to the question before."
 AT_THE_FIRST = "This is the first question."
 NOTHING_ANSWERED = "The answers ended before the last question: nothing is written."
 NOTHING_WRITTEN = "Nothing is written."

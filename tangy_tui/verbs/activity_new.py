@@ -191,7 +191,8 @@ def _ask(draft: Draft, key: str) -> None:
             print(words.AT_THE_FIRST)
         return
     if (problem := draft.answer(key, said)) is not None:
-        print(plain(words.problem_words(problem)))
+        told = words.problem_words(problem)
+        print(plain(f"{told} {words.OR_BACK}" if problem.code == "empty" else told))
 
 
 def _ask_to_write(draft: Draft, *, allowed: bool) -> None:

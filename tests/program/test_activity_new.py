@@ -375,12 +375,19 @@ def test_a_given_welcome_stays_if_the_title_changes(tmp_path: Path) -> None:
     assert draft.said["welcome"] == examples().said["songs"][0]
 
 
+def test_an_empty_line_that_cannot_be_taken_names_the_way_back(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    asked = tangy("activity", "new", tmp_path, stdin="Ours\n1\n\ny\n\nWhich?\n\n")
+    assert "Please type an answer. Type back to return to the question before." in asked.stdout
+
+
 def test_a_wrong_answer_that_was_typed_twice_is_offered_once() -> None:
     row = {"ask": "What is red?", "right": "rose", "wrong": "sky, sky, sea;, sea;"}
     (question,) = choice_questions([row])
     assert sorted(question.options) == ["rose", "sea;", "sky"]
 
 
-@pytest.mark.parametrize(("quotes", "line"), [(True, 'a "b" c'), (False, "a b c")])
+@pytest.mark.parametrize(("quotes", "line"), [(True, 'a "b" c'), (False, "a “b” c")])
 def test_a_line_loses_what_means_something_in_the_files(quotes: bool, line: str) -> None:
     assert kept('  a \\"b" {c}|', quotes=quotes) == line
