@@ -121,9 +121,9 @@ def says_line(speech: str) -> str:
 def ended_words(ended: GameEnded) -> str:
     """Tell how a game ended, and why if it stopped or ended early."""
     if ended.stopped is not None:
-        return f"The game stopped after {ended.steps} steps. {ended.stopped}"
-    early = early_words(ended)
-    return f"The game is over after {ended.steps} steps." + (f" {early}" if early else "")
+        return f"The game stopped after {counted(ended.steps, 'step')}. {ended.stopped}"
+    told = f"The game is over after {counted(ended.steps, 'step')}. {early_words(ended)}"
+    return told.rstrip()
 
 
 def early_words(ended: GameEnded) -> str:

@@ -265,6 +265,27 @@ async def test_letters_that_arrive_together_filter_the_kinds_and_their_digits_ch
         assert "emergency-stop" not in {k.name for k in dialog.kinds}
 
 
+@pytest.mark.parametrize(
+    ("keys", "answer"),
+    [
+        (("enter",), "camera-occluded"), (("2",), "emergency-stop"),
+        ((*"laser-o", "enter"), "laser-occluded"), ((*"laser-o", "9", "enter"), "laser-occluded"),
+        ((*"laser", "2"), "laser-occluded"), ((*"xyz", "escape", "enter"), "camera-occluded"),
+        (("escape",), ""),
+    ],
+)  # fmt: skip
+async def test_a_kind_is_taken_by_number_or_enter_and_none_by_escape(
+    keys: tuple[str, ...], answer: str, run: Run
+) -> None:
+    answers = list[str | None]()
+    dialog = InjectDialog(("camera-occluded",), (), dict.fromkeys(KINDS, ""))
+    async with run(size=SMALL) as pilot:
+        pilot.app.push_screen(dialog, answers.append)
+        await until_shown(pilot, lambda: dialog.focused is not None)
+        pilot.type(*keys)
+        await until_shown(pilot, lambda: answers == [answer or None])
+
+
 @pytest.mark.slow
 async def test_letters_typed_right_after_the_key_of_faults_go_to_their_list(
     run: Run, workspace: Workspace, policy: Policy
