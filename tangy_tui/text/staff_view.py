@@ -160,7 +160,7 @@ def settled_words(
 ) -> tuple[str, str]:
     """Tell the next step if it is settled, whatever Tangy would decide, and about whom it is.
 
-    Both are "" if it is not. Staff read the same on the panel and if they ask why.
+    Both are "" if it is not. The panel and the answer to why tell the same step.
 
     Args:
         claim: the last claim, while it is news.

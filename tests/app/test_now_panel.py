@@ -103,7 +103,8 @@ def test_a_claim_that_wins_is_news_until_tangy_is_there(robot: Robot) -> None:
     plan.say_early(ClaimCard(17, "user3"))  # while Tangy carries out its step
     assert news_line(shown).startswith(f"Card 17 ({name}) wins. Tangy finishes this")
     assert next_of(robot) == goes
-    assert goes in why_now_lines(robot.control, robot.workspace.name)
+    why = why_now_lines(robot.control, robot.workspace.name)
+    assert f"Tangy goes to {name} next, because of the claim." in why
     robot.control.apply(ClaimCard(17, "user3"))
     assert news_line(shown) == f"Card 17 ({name}) wins. Tangy goes there next."
     assert next_of(robot) == goes

@@ -102,9 +102,7 @@ def next_line(shown: ViewSource) -> str:
             claims=planned.vouched if planned else (),
             waits=control.robot.rests(found[0]),
         )
-    elif (
-        not words and shown.said
-    ):  # if the next step is unknown, staff need to know the last question
+    elif not words and shown.said:  # staff need to know the last question then
         words = text.said_words(shown.said)
     return words if control.going else f"{text.PAUSED} {words}".strip()
 
