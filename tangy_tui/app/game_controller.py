@@ -92,6 +92,7 @@ class GameController(HandingOver):
         self.autonomy = AutonomyDial()
         self.stopped = self.taking_over = False
         self.stepping = False
+        self.obeys: tuple[Behaviour, str | None] | None = None  # what staff said, and to whom
         """Whether a step is being carried out now."""
         self.nudge = threading.Event()
         """Set when something changed, for the thread that waits to call `next`."""
@@ -383,9 +384,9 @@ class GameController(HandingOver):
             refused = StaffNote("ends") if self._stands_at_end else self.refusal(asking=False)
             if refused is not None:
                 return [refused]
-            self.stepping = True
+            self.stepping, self.obeys = True, (behaviour, target)
             try:
                 return list(self.supervision.answer(behaviour, target, self.by))
             finally:
-                self.stepping = False
+                self.stepping, self.obeys = False, None
                 self._tell_all()

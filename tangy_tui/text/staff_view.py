@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 from typing import TypeAlias, assert_never
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.game_rules import Patterns
 from tangy_profiles.state import ActivityState
 from tangy_tui.app.game_commands import Autonomy
@@ -25,6 +26,7 @@ STEP_SECONDS = 10
 
 NOTHING_CALLED = "nothing called yet"
 PAUSED = "Paused."
+PAUSES_THEN = "Tangy finishes this, then the game is paused."
 TIME_FIRST = ", once everybody has had time"
 """Why Tangy does not call the next number yet."""
 TANGY_WAITS = f"Tangy {WAITS_FOR_YOU}."
@@ -171,6 +173,11 @@ def settled_words(
     if claim is not None and claim.kind == "claim right" and claim.person:
         return f"Next: go to {name(claim.person)} ({CLAIM_FIRST}).", claim.person
     return f"Somebody has won. Next: the game goes on for {pattern}." if pattern else "", ""
+
+
+def obeys_words(behaviour: Behaviour, whom: str) -> str:
+    """Tell the step that staff chose, while Tangy carries it out."""
+    return f"As you said: {addressed_step(behaviour.question, whom)}."
 
 
 def calls_first_words(calls: int, then: str) -> str:

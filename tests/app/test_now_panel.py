@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.game_rules import GamePlan
-from tangy_tui.app.game_commands import AskFor, ClaimCard, Pause
+from tangy_tui.app.game_commands import AskFor, ClaimCard, Pause, TakeOver
 from tangy_tui.app.plan_controls import CLAIM_SECONDS
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.text.staff_view import person_words
+from tangy_tui.text.staff_view import PAUSED, PAUSES_THEN, person_words
 from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, news_line, next_line
 from tests.app.test_interruption import Robot
@@ -110,6 +110,36 @@ def test_a_claim_that_wins_is_news_until_tangy_is_there(robot: Robot) -> None:
     assert next_of(robot) == goes
     robot.next(1)
     assert world.tracker.place == "user3" and news_line(shown) == ""
+
+
+def test_a_step_that_staff_chose_is_told_while_it_is_carried_out(robot: Robot) -> None:
+    robot.next(2)
+    robot.control.apply(TakeOver())
+    robot.next(1)
+    robot.control.apply(AskFor("user2"))
+    shown = list[str]()
+    robot.link.meanwhile = lambda do, time: shown.append(next_of(robot))
+    behaviour = robot.world.activity.behaviours["navigate to user"]
+    robot.control.answer(behaviour, "user3")
+    said = f"As you said: go to {robot.workspace.name('user3')}."
+    assert shown and all(one == said for one in shown)
+    assert robot.control.obeys is None and not next_of(robot).startswith(said)
+
+
+def test_a_pause_during_a_step_is_told_to_come_after_it(robot: Robot) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user2"))
+    shown = list[str]()
+
+    def pause(do: str, time: float) -> None:
+        robot.control.apply(Pause())
+        shown.append(next_of(robot))
+
+    robot.link.meanwhile = pause
+    robot.next(1)
+    assert shown and all(one.startswith(PAUSES_THEN) for one in shown)
+    robot.link.meanwhile = lambda do, time: None
+    assert next_of(robot).startswith(PAUSED)
 
 
 def test_the_reason_stands_before_the_visit() -> None:

@@ -90,6 +90,9 @@ def next_line(shown: ViewSource) -> str:
     calls_first = 0 if planned is None else planned.tracker.calls_first
     pattern = "" if planned is None else plays_on(planned)
     words, _ = text.settled_words(control.plan.claim, pattern, shown.name)
+    if control.obeys is not None:
+        behaviour, whom = control.obeys
+        words = text.obeys_words(behaviour, shown.name(whom) if whom else "")
     if not words and planned is not None and planned.looking:
         words = text.looks_words(shown.name(planned.looking), world.activity.object)
     elif not words and found is not None:
@@ -102,9 +105,11 @@ def next_line(shown: ViewSource) -> str:
             claims=planned.vouched if planned else (),
             waits=control.robot.rests(found[0]),
         )
-    elif not words and shown.said:  # staff need to know the last question then
+    elif not words and shown.said:  # staff need to know the last question
         words = text.said_words(shown.said)
-    return words if control.going else f"{text.PAUSED} {words}".strip()
+    if control.going:
+        return words
+    return f"{text.PAUSES_THEN if control.stepping else text.PAUSED} {words}".strip()
 
 
 def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[text.Fact]:
