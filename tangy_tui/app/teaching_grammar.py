@@ -1,4 +1,4 @@
-"""The grammar of typed commands while teaching, and of those that screens carry out like keys.
+"""The grammar of typed commands while teaching.
 
 The parsers return `None` for words that are no command, as those of `command_grammar` do.
 """
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from tangy_tui.app.command_grammar import LEAVING, LONGEST_NUMBER
-from tangy_tui.app.inquiry_grammar import Inquiry, read_inquiry
-from tangy_tui.app.keymap import ACTIONS
+from tangy_tui.app.inquiry_grammar import Inquiry
+from tangy_tui.app.screen_grammar import PERFORMS, Perform, read_program
 from tangy_tui.language.steering import WHILE_TEACHING, steering_of
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.remarks import answers_to
@@ -43,14 +43,6 @@ class AgainFrom:
 
 
 _WHATEVER = re.compile(r"(?:always )?(?:it is |do |that is )?the same whatever(.*)")
-
-
-@dataclass(frozen=True, slots=True)
-class Perform:
-    """Run an action of the keymap; `on` is the wanted state of a switch if the words name it."""
-
-    action: str
-    on: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,25 +77,9 @@ TEACHING: dict[str, TeachingWord] = {
     **dict.fromkeys(("finish the demonstration", "finish here", "that is all"), Finish()),
     **dict.fromkeys(("start over", "begin again", "begin anew", "start again"), AgainFrom(1)),
     **dict.fromkeys(("shown", "seen"), "shown"),
-    **dict.fromkeys(("voice on", "speak"), Perform("voice", on=True)),
-    **dict.fromkeys(("voice off", "be quiet"), Perform("voice", on=False)),
-    **dict.fromkeys(("pause listening", "stop listening"), Perform("listen", on=False)),
-    **dict.fromkeys(("listen", "listen again"), Perform("listen", on=True)),
-    "guided game": Perform("guided"),
-    **dict.fromkeys(("rule", "make it a rule", "make a rule"), Perform("rule")),
-    **dict.fromkeys(("play", "play a game", "let tangy play"), Perform("begin")),
-    **dict.fromkeys(("my name", "change my name", "who am i"), Perform("name")),
+    **PERFORMS,
 }
 """Commands while teaching, besides the word of every action of the keymap."""
-
-PERFORMED = frozenset(
-    {
-        *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
-        *("learn", "library", "guided", "filter", "quit", "name", "messages"),
-    }
-)
-"""Actions of the keymap whose typed words work on the teaching screen as their keys do elsewhere.
-"""
 
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _CALLED = re.compile(r"(?:my name is|my name's|i am called) (\S.*)", re.I)
@@ -132,23 +108,6 @@ def _named_facts(words: str) -> tuple[str, ...]:
     """Return the facts that words name: "the clock and hinted are", "the value of clock"."""
     kept = re.sub(r"\b(?:is|are|(?:the )?values? of|the|happens|comes)\b", " ", words)
     return tuple(" ".join(one.split()) for one in re.split(r",| and | or ", kept) if one.strip())
-
-
-def read_program(text: str) -> Perform | Inquiry | None:
-    """Parse words as a command or question to the program itself; None if they are neither."""
-    words = " ".join(text.split()).casefold()
-    if isinstance(word := TEACHING.get(words), Perform):
-        return word
-    action = next((a.id for a in ACTIONS if a.id in PERFORMED and a.word == words), None)
-    return Perform(action) if action is not None else read_inquiry(text)
-
-
-def read_screen(text: str) -> Perform | None:
-    """Parse words as a command that a screen carries out like a key."""
-    word = read_program(text)
-    if isinstance(word, str):
-        return Perform(word) if word in ("why", "help", "phrases") else None
-    return word
 
 
 SETTLING: dict[str, RemarkAnswer] = {

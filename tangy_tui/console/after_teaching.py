@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.teaching_grammar import Perform
+from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.text.teaching_commands import NOW_PLAY, ON_THE_SCREEN
 
 

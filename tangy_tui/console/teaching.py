@@ -13,15 +13,9 @@ from typing import Any
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.command_grammar import read_answer
+from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.spoken_answers import choices_of, spoken_settling
-from tangy_tui.app.teaching_grammar import (
-    AgainFrom,
-    Leave,
-    Perform,
-    TeachAs,
-    read_settling,
-    read_teaching,
-)
+from tangy_tui.app.teaching_grammar import AgainFrom, Leave, TeachAs, read_settling, read_teaching
 from tangy_tui.app.tour import Tour
 from tangy_tui.console.after_teaching import AfterTeaching
 from tangy_tui.console.confirming import ConfirmingTeacher

@@ -35,7 +35,8 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.inquiry_grammar import INQUIRIES, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
 from tangy_tui.app.plan_grammar import CHECK
-from tangy_tui.app.teaching_grammar import AgainFrom, Leave, Perform, read_screen, read_teaching
+from tangy_tui.app.screen_grammar import Perform, read_screen
+from tangy_tui.app.teaching_grammar import AgainFrom, Leave, read_teaching
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.learning.verification import Reply, StopCommand
 

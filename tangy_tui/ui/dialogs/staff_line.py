@@ -14,7 +14,7 @@ from textual.widgets import Input
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.game_commands import GameCommand
 from tangy_tui.app.inquiry_grammar import AsksAbout
-from tangy_tui.app.teaching_grammar import Perform
+from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.text import typed_commands as text
 from tangy_tui.text.telling import TELL, TELL_HELP, TELL_KEYS, telling_words
 from tangy_tui.ui.dialogs.line import LineDialog

@@ -36,9 +36,9 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
 from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.screen_grammar import Perform, read_screen
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.staff_notes import REFUSALS, Proposal, StaffNote
-from tangy_tui.app.teaching_grammar import Perform, read_screen
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of

@@ -20,8 +20,8 @@ from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import Accept, EndGame, GameCommand, GiveBack, StopRobot, asked_for
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
+from tangy_tui.app.screen_grammar import Perform, read_screen
 from tangy_tui.app.staff_notes import StaffNote
-from tangy_tui.app.teaching_grammar import Perform, read_screen
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook

@@ -15,7 +15,8 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.teaching_grammar import Perform, read_settling, read_teaching
+from tangy_tui.app.screen_grammar import Perform
+from tangy_tui.app.teaching_grammar import read_settling, read_teaching
 from tangy_tui.app.tour import Tour
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.teaching_events import (
@@ -47,7 +48,6 @@ from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel, room_panel
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_choices import add_rule, put_away, show_again
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
-from tangy_tui.ui.screens.teach_keys import NOT_WATCHING, WATCHING
 from tangy_tui.ui.screens.teach_letters import type_letter
 from tangy_tui.ui.screens.teach_scripted import follow_script
 from tangy_tui.ui.screens.teach_why import TeachWhy
@@ -140,7 +140,7 @@ class TeachScreen(TangyScreen[bool]):
             letters=False,
             id="command",
         )
-        keys = self._listener.keys if self._scripted is None else WATCHING
+        keys = self._listener.keys if self._scripted is None else teach_keys.WATCHING
         yield KeyLine(*keys, typing=self._scripted is None)
 
     def on_mount(self) -> None:
@@ -194,7 +194,7 @@ class TeachScreen(TangyScreen[bool]):
             return self._picture.tours(skip="skip" in parameters)
         if action == "talk":
             return self._listener.by_key
-        return self._scripted is None or action not in NOT_WATCHING
+        return self._scripted is None or action not in teach_keys.NOT_WATCHING
 
     def take_letter(self, event: events.Key | events.Paste) -> bool:
         """Send letters to the line, whatever has the focus: none is a shortcut here."""

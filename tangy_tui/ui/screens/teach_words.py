@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tangy_tui.app.teaching_grammar import AgainFrom, Leave, Perform, TeachAs, TeachingWord
+from tangy_tui.app.screen_grammar import Perform
+from tangy_tui.app.teaching_grammar import AgainFrom, Leave, TeachAs, TeachingWord
 from tangy_tui.learning.teaching_events import Discard, Finish, Next, Redo, SameWhatever, Undo
 from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.text.teaching import left_words
