@@ -233,7 +233,7 @@ def _made(draft: Draft, read: list[ChoiceQuestion], *, show: bool) -> list[str]:
     from tangy_tui.text.activities import people_did, tried_lines
     from tangy_tui.text.numbers import counted
     from tangy_tui.verbs.activity import checked_file
-    from tangy_tui.verbs.activity_building import built
+    from tangy_tui.verbs.activity_files import built
 
     toml, table = built(draft, read)
     with tempfile.TemporaryDirectory() as made:
@@ -265,7 +265,7 @@ def _made(draft: Draft, read: list[ChoiceQuestion], *, show: bool) -> list[str]:
 
 def _write(draft: Draft, read: list[ChoiceQuestion], data: Path | None) -> None:
     from tangy_tui.app.new_activity import CARDS
-    from tangy_tui.verbs.activity_building import built
+    from tangy_tui.verbs.activity_files import built
     from tangy_tui.verbs.activity_writing import write_new
 
     toml, table = built(draft, read)

@@ -127,3 +127,13 @@ async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
     await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= steps)
     live(pilot).control.apply(Pause())
     await until_shown(pilot, lambda: not live(pilot).working)
+
+
+async def until_a_call_is_held(
+    pilot: TangyPilot, link: HeldLink, world: LiveWorld, calls: int = 1
+) -> None:
+    """Wait until Tangy, after some calls, says a number, and does not come to its end."""
+    await until_shown(pilot, lambda: len(world.called_now) >= calls)
+    while not (world.calling and len(link.said) > link.most):
+        link.most = len(link.said)
+        await pilot.pause(0.05)

@@ -14,7 +14,7 @@ from tangy_tui.ui.dialogs.staff_line import CommandDialog, NextDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.round_trip import ReplyParser
 from tests.pilot.conftest import SMALL, screen_text
-from tests.pilot.live_games import HeldLink, live
+from tests.pilot.live_games import HeldLink, live, until_a_call_is_held
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -32,14 +32,6 @@ async def at_the_front(pilot: TangyPilot, world: LiveWorld) -> None:
     """Wait until Tangy only waits for the time of the second call."""
     await until_shown(pilot, lambda: len(world.called) == 1)
     await until_shown(pilot, lambda: live(pilot).control.counts_down)
-
-
-async def until_a_call_is_held(pilot: TangyPilot, link: HeldLink, world: LiveWorld) -> None:
-    """Wait until Tangy says a number, and does not come to its end."""
-    await until_shown(pilot, lambda: len(world.called_now) >= 1)
-    while not (world.calling and len(link.said) > link.most):
-        link.most = len(link.said)
-        await pilot.pause(0.05)
 
 
 @pytest.mark.slow

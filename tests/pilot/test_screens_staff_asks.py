@@ -34,7 +34,7 @@ from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.app.test_interruption import Robot
 from tests.pilot.conftest import SMALL, StillClock, screen_text
 from tests.pilot.faults import game_of, halting, playing
-from tests.pilot.live_games import HeldLink, live, paused_after
+from tests.pilot.live_games import HeldLink, live, paused_after, until_a_call_is_held
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -67,10 +67,7 @@ async def test_a_call_is_taken_back_after_the_one_that_is_being_said(
     label = workspace.activity.deck.label
     async with run(app=program) as pilot:
         room = live(pilot).query_one(RoomView)
-        await until_shown(pilot, lambda: len(world.called_now) >= 2)
-        while not (world.calling and len(link.said) > link.most):  # until a call is held
-            link.most = len(link.said)
-            await pilot.pause(0.05)
+        await until_a_call_is_held(pilot, link, world, 2)
         (said,), asked = world.calling, world.called_now[-1]
         await pilot.press("f2")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
@@ -113,10 +110,7 @@ async def test_staff_type_what_tangy_does_next_while_it_finishes_its_step(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, gives_back: bool
 ) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: len(world.called_now) >= 1)
-        while not (world.calling and len(link.said) > link.most):  # until a call is held
-            link.most = len(link.said)
-            await pilot.pause(0.05)
+        await until_a_call_is_held(pilot, link, world)
         await pilot.press("o")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
         if gives_back:
@@ -135,10 +129,7 @@ async def test_the_line_for_what_tangy_does_next_ends_with_the_game(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, typed: str
 ) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: len(world.called_now) >= 1)
-        while not (world.calling and len(link.said) > link.most):  # until a call is held
-            link.most = len(link.said)
-            await pilot.pause(0.05)
+        await until_a_call_is_held(pilot, link, world)
         screen = live(pilot)
         await pilot.press("o")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))

@@ -23,7 +23,7 @@ from tangy_tui.text.activity_questions import (
     answers,
     draft_lines,
 )
-from tangy_tui.verbs.activity_building import built
+from tangy_tui.verbs.activity_files import built
 from tests.support.media import make_picture
 
 Tangy = Callable[..., CompletedProcess[str]]
