@@ -271,7 +271,8 @@ async def test_letters_that_arrive_together_filter_the_kinds_and_their_digits_ch
         (("enter",), "camera-occluded"), (("2",), "emergency-stop"),
         ((*"laser-o", "enter"), "laser-occluded"), ((*"laser-o", "9", "enter"), "laser-occluded"),
         ((*"laser", "2"), "laser-occluded"), ((*"xyz", "escape", "enter"), "camera-occluded"),
-        (("escape",), ""),
+        (("escape",), ""), ((*"xyz", "enter", "escape", "escape"), ""),
+        (("down", "down", "enter"), "link-lost"),
     ],
 )  # fmt: skip
 async def test_a_kind_is_taken_by_number_or_enter_and_none_by_escape(
@@ -282,6 +283,7 @@ async def test_a_kind_is_taken_by_number_or_enter_and_none_by_escape(
     async with run(size=SMALL) as pilot:
         pilot.app.push_screen(dialog, answers.append)
         await until_shown(pilot, lambda: dialog.focused is not None)
+        await pilot.pause()
         pilot.type(*keys)
         await until_shown(pilot, lambda: answers == [answer or None])
 

@@ -143,12 +143,16 @@ class InjectDialog(Dialog[str | None]):
             return
         event.stop()
         event.prevent_default()
-        if event.key == "enter" and self.kinds:
-            self.answer(str(self.query_one(KindList).chosen))
+        if event.key == "enter":
+            self.app.call_later(self._take)  # after the moves that arrived before it
         elif event.key == "escape":
             self.answer(None)
         elif event.key in "123456789" and int(event.key) <= len(self.kinds):
             self.answer(self.kinds[int(event.key) - 1].name)
+
+    def _take(self) -> None:
+        if self.kinds:
+            self.answer(str(self.query_one(KindList).chosen))
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` handles the keys, to check each of them."""
