@@ -10,7 +10,7 @@ from tangy_profiles.game_records import FaultDiagnosed, FaultMove, RecoveryEvent
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.game_commands import Pause, SetPace
 from tangy_tui.app.interruption import find_interrupted
-from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.learning.policy import Policy
@@ -22,6 +22,7 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tests.pilot.conftest import Run, StillClock
+from tests.support.interrupted_games import broken_off
 from tests.support.waiting import until_shown
 
 STEPS = 6
@@ -36,12 +37,8 @@ def data_folder(taught: Path) -> Path:
 @pytest.fixture
 def interrupted(workspace: Workspace, learnt: Policy) -> Workspace:
     """A workspace with a game that was killed after a fault and some commands of staff."""
-    supervision = workspace.supervision(learnt, 5)
-    control = scripted_controller(supervision)
-    control.begin()
-    while supervision.steps < STEPS:
-        go_on_by_script(control, expert=False)
-    game, store = supervision.game.game, workspace.store
+    control = broken_off(workspace, learnt, STEPS)
+    game, store = control.supervision.game.game, workspace.store
     fault = FaultDiagnosed(
         game=game, fault="f1", code="VOICE", name="The voice is silent", criticality="non-critical",
         recovery="continue", step=STEPS, seconds=12.0, behaviour="", console="Nobody hears Tangy.",

@@ -9,7 +9,6 @@ import pytest
 from tangy_profiles.game_records import GameBeginning, GameEnding
 from tangy_profiles.game_world import LIVE
 from tangy_tui.app.game_to_play import GameToPlay
-from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.choose import ChooseDialog
@@ -22,6 +21,7 @@ from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, TangyPilot
 from tests.pilot.live_games import HeldLink, held_world
+from tests.support.interrupted_games import broken_off
 from tests.support.waiting import until, until_shown
 
 STEPS = 9
@@ -36,11 +36,7 @@ def data_folder(taught: Path) -> Path:
 @pytest.fixture
 def interrupted(workspace: Workspace, learnt: Policy) -> Workspace:
     """A workspace in whose log the last game has no end."""
-    supervision = workspace.supervision(learnt, 5)
-    control = scripted_controller(supervision)
-    control.begin()
-    while supervision.steps < STEPS:
-        go_on_by_script(control, expert=False)
+    broken_off(workspace, learnt, STEPS)
     return workspace
 
 
