@@ -109,7 +109,7 @@ class PersonTurn:
         return tuple(before)
 
 
-def present_moment(control: GameController) -> GameMoment:
+def game_moment(control: GameController) -> GameMoment:
     """Return the present moment of a controller's game; from any thread, at any time."""
     world, people = control.supervision.world, control.view().people
     holder, about = _holder(control)
@@ -140,7 +140,7 @@ def present_moment(control: GameController) -> GameMoment:
 
 def turn_of(control: GameController, person: str) -> PersonTurn | None:
     """Return when Tangy goes to a person, by id; None: the person does not take part."""
-    moment = present_moment(control)
+    moment = game_moment(control)
     found = next((one for one in moment.people if one.id == person), None)
     if found is None:
         return None

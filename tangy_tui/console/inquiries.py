@@ -8,6 +8,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.game_moment import game_moment
 from tangy_tui.app.inquiry_grammar import (
     WHO_IS_HERE,
     WHOSE_CARDS,
@@ -16,7 +17,6 @@ from tangy_tui.app.inquiry_grammar import (
 )
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
-from tangy_tui.app.whose_turn import present_moment
 from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
@@ -107,7 +107,7 @@ class Inquiries:
 
     def _nothing_wrong(self) -> list[str]:
         """Tell that nothing is wrong, and what holds the game if something does."""
-        held = "" if self._game.over else held_words(present_moment(self._controller))
+        held = "" if self._game.over else held_words(game_moment(self._controller))
         return [NOTHING_WRONG, held] if held else [NOTHING_WRONG]
 
     @property

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_world import SIMULATED
+from tangy_tui.app.game_moment import game_moment, turn_of
 from tangy_tui.app.staff_notes import StaffNote
-from tangy_tui.app.whose_turn import present_moment, turn_of
 from tangy_tui.text.control import claimed_words, noted_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.numbers import counted, listed
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.state import ActivityState
     from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.game_moment import GameMoment, PersonTurn
     from tangy_tui.app.inquiry_grammar import AsksAbout
     from tangy_tui.app.staff_view import PersonNow
-    from tangy_tui.app.whose_turn import GameMoment, PersonTurn
     from tangy_tui.learning.policy import Decision
 
     Name = Callable[[str], str]
@@ -48,7 +48,7 @@ MOST_NAMES = 3
 
 def why_now_lines(control: GameController, name: Name) -> list[str]:
     """Tell what Tangy does now in a controller's game, and why; see `now_lines`."""
-    return now_lines(control.supervision.world.activity, present_moment(control), name)
+    return now_lines(control.supervision.world.activity, game_moment(control), name)
 
 
 def about_lines(control: GameController, about: AsksAbout, name: Name) -> list[str]:

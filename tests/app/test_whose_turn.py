@@ -27,17 +27,17 @@ from tangy_tui.app.game_commands import (
     StopRobot,
     TakeOver,
 )
+from tangy_tui.app.game_moment import (
+    GameMoment,
+    PersonTurn,
+    game_moment,
+    turn_of,
+    turns_from_now,
+)
 from tangy_tui.app.inquiry_grammar import AsksAbout, read_inquiry, read_question
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.teaching_grammar import read_teaching
-from tangy_tui.app.whose_turn import (
-    GameMoment,
-    PersonTurn,
-    present_moment,
-    turn_of,
-    turns_from_now,
-)
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.language.examples import wordings_of
@@ -274,7 +274,7 @@ def test_questions_to_staff_are_told_with_who_waits(robot: Robot) -> None:
     robot.next(2)
     ask(robot, "user3", "user1")
     robot.control.view()
-    moment = present_moment(robot.control)
+    moment = game_moment(robot.control)
     asks = replace(moment, holder="question", about="Nobody has shown Tangy this.")
     activity, name = robot.workspace.activity, robot.workspace.name
     assert text.now_lines(activity, asks, name) == [

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.game_moment import plays_on
 from tangy_tui.app.readiness import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
-from tangy_tui.app.whose_turn import plays_on
 from tangy_tui.text import staff_view as text
 from tangy_tui.text.control import claimed_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
