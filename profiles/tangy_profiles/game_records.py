@@ -113,6 +113,9 @@ ChangeKind = Literal[
 ]
 """Kinds of changes in a game besides its behaviours."""
 
+SETTLING: tuple[ChangeKind, ...] = ("others first", "played on", "visit put off", "visit over")
+"""Changes that close the request of their person."""
+
 
 @kind("game change")
 class GameChange(EventRecord):

@@ -15,7 +15,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, calling
 from tangy_profiles.declared.memory import GameMemory, with_player
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_records import GameBeginning, GameChange, GameEnding, GameStep
+from tangy_profiles.game_records import SETTLING, GameBeginning, GameChange, GameEnding, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.known_cards import KnownCards
@@ -38,10 +38,10 @@ class OpenRequests:
 
     def change(self, change: GameChange) -> None:
         """Apply a change of the game."""
-        if change.what == "calls first":
+        if change.what in ("calls first", "all called"):
             self._calls = change.number
-        elif change.what == "all called":
-            self._calls = 0
+        elif change.what in SETTLING:
+            self.people -= {change.person}
 
     def step(self, before: ActivityState, after: ActivityState, *, called: bool) -> None:
         """Apply a step that led from a state to the next, and whether it called a number."""

@@ -100,6 +100,7 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
     goes = goes_to_people(replay.activity)
     found = {person: Attention(person, could_visit=goes) for person in replay.game.people}
     asked: dict[str, float] = {}
+    sent = set[str]()  # whom Tangy visits unasked, until their request is closed
     requests = replay.requests
     before: Done | None = None
     won = wins(replay)
@@ -107,10 +108,13 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
         _count_visit(found, done, "" if before is None else before.after.place)
         if done.number in won and done.after.place in found:
             found[done.after.place].won += 1
+        waited = frozenset[str]() if before is None else requests[before.number]
+        sent |= {who for step, who in replay.unasked if step == done.number and who not in waited}
         if before is not None:
-            _count_between(replay, asked, done, requests[before.number])
-        before = done
-        _count_requests(found, asked, done, requests[done.number])
+            _count_between(replay, asked, done, waited | sent)
+        before, waiting = done, requests[done.number]
+        _count_requests(found, asked, done, waiting - sent)
+        sent &= waiting
     for person, since in asked.items():
         found[person].open.append(max(0.0, replay.seconds - since))
         found[person].spans.append((since, max(since, replay.seconds)))
@@ -163,8 +167,7 @@ def _count_between(
     """Record requests that began between two steps, as in live games."""
     for user in done.state.users:
         waits = user.request == "AR" and done.state.place != user.id
-        sent = (done.number, user.id) in replay.unasked or user.id not in replay.game.people
-        if waits and not sent and user.id not in waited | asked.keys():
+        if waits and user.id in replay.game.people and user.id not in waited | asked.keys():
             asked[user.id] = done.begun
 
 

@@ -126,6 +126,41 @@ def test_calls_first_does_not_interrupt_a_wait() -> None:
     assert (bob.requests, bob.waits, bob.open) == (1, [30.0], [])
 
 
+def changed(replay: GameReplay, after: int, **given: object) -> GameReplay:
+    """Return a game with a change after a step; all its steps are calls."""
+    moments = list[Moment]()
+    for moment in replay.moments:
+        assert isinstance(moment.what, Done)
+        moments.append(replace(moment, what=replace(moment.what, draws=True)))
+    change = GameChange(game="g1", steps=after, **given)  # type: ignore[arg-type]
+    moments.insert(after, Moment(after * LENGTH, after, BEGUN.isoformat(), change))
+    return replace(replay, moments=moments)
+
+
+def test_a_winner_no_longer_waits_when_calls_come_first_afterwards() -> None:
+    celebrated = state("ann", ["ann"])
+    replay = replay_of(
+        state(FRONT), state(FRONT, ["ann"]), celebrated, celebrated, state(FRONT), state(FRONT)
+    )
+    replay = changed(replay, 3, what="played on", person="ann")
+    first = GameChange(game="g1", what="calls first", steps=3, number=4)
+    replay.moments.insert(4, Moment(30.0, 3, BEGUN.isoformat(), first))
+    ann = attention_in(replay)["ann"]
+    assert (ann.waits, ann.open, ann.visits) == ([10.0], [], 1)
+
+
+def test_a_claim_by_staff_is_no_request_even_if_the_first_drive_fails() -> None:
+    replay = replay_of(
+        state(FRONT), state(FRONT), state(FRONT, ["ann"]), state("ann", ["ann"]),
+        state("ann", ["ann"]),
+    )  # fmt: skip
+    replay = changed(replay, 1, what="claimed", person="ann", by="Nina")
+    asked = attention_in(replay)["ann"]
+    replay.unasked.add((2, "ann"))
+    claimed = attention_in(replay)["ann"]
+    assert (asked.requests, claimed.requests, claimed.visits) == (1, 0, 1)
+
+
 def test_the_summary_lists_waits_longest_first() -> None:
     ann = Attention("Ann", waits=[20.0, 400.0], visits=2, seconds=30.0, won=1)
     bob, cy = Attention("Bob", open=[60.0]), Attention("Cy", waits=[30.0], open=[120.0], visits=1)
