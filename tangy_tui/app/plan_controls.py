@@ -256,9 +256,12 @@ class GamePlanControls:
         if world.numbers_on(card) is None:
             return StaffNote("no such card", str(card), cards)
         everybody = set(world.people) - world.away <= set(known)
-        if everybody and not person and not world.holder(card):
+        if person or world.holder(card):
+            return None
+        if everybody:
             return StaffNote("whose card", str(card), cards)
-        return None
+        # The group is told of no win that Tangy cannot celebrate.
+        return StaffNote("whose card", str(card)) if world.wins(card) else None
 
     def _nothing_called(self, label: str) -> StaffNote | None:
         """Return why there is no call to take back, None if there is one.
@@ -303,12 +306,9 @@ class GamePlanControls:
         told: list[Result] = [StaffNote(kind, str(card), said, people)]
         if kind != "claim right":
             return told
-        if holder:
-            told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
-            if self._claimed is claimed:  # staff may have typed another one meanwhile
-                self._claimed = replace(claimed, goes=True)
-        else:
-            told.append(StaffNote("whose card", str(card)))
+        told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
+        if self._claimed is claimed:  # staff may have typed another one meanwhile
+            self._claimed = replace(claimed, goes=True)
         return told
 
     def _choose(self, world: PlannedGame, names: tuple[str, ...]) -> list[Result]:

@@ -308,8 +308,7 @@ def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = 
         case None:
             return f"{card}: Tangy checks it as soon as it has called {calling or 'the number'}."
         case "claim right":
-            then = "goes there next" if claimed.person else "tells everybody"
-            done = f"{card} wins." + (f" Tangy {then}." if told else "")
+            done = f"{card} wins." + (" Tangy goes there next." if told else "")
         case "claim late":
             done = f"{card} wins, too, but another card was first."
         case "claim wrong":

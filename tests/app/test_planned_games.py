@@ -176,6 +176,23 @@ def test_cards_in_play_are_those_of_people_who_are_here(planned: Planned) -> Non
     assert isinstance(note, StaffNote) and note.words == "1, 3, 4"
 
 
+def test_a_win_is_told_to_nobody_before_it_is_known_whose_it_is(
+    planned: Planned, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=3)
+    said = list[str]()
+    monkeypatch.setattr(SimulatedWorld, "known_cards", {"user1": 1})
+    numbers = planned.world.players["user3"].numbers
+    monkeypatch.setattr(SimulatedWorld, "numbers_on", lambda self, card: numbers)
+    monkeypatch.setattr(SimulatedWorld, "holder", lambda self, card: "")
+    monkeypatch.setattr(SimulatedWorld, "announce", lambda self, words: said.append(words))
+    assert planned.do(ClaimCard(3)) == ["claim wrong"] and len(said) == 1
+    monkeypatch.setattr(SimulatedWorld, "wins", lambda self, card: True)
+    assert planned.do(ClaimCard(3)) == ["whose card"] and len(said) == 1
+    assert planned.do(ClaimCard(3, "user3")) == ["claim right", "claimed"] and len(said) == 2
+
+
 def test_those_who_may_hold_a_card_are_here_and_have_none(
     planned: Planned, monkeypatch: pytest.MonkeyPatch
 ) -> None:
