@@ -53,6 +53,7 @@ class SetUp(Readiness):
     dropped: list[Choice] = field(default_factory=list)
     """The choices that the last change of activity could not keep."""
     _order: list[str] = field(default_factory=list)  # of seats, also of people who do not play now
+    _before: list[str] | None = None  # the seats before a person was picked up
     _moved: bool = False  # whether people changed seats
     _pace_given: bool = False
     _away: set[str] = field(default_factory=set)  # people who do not play now
@@ -113,6 +114,27 @@ class SetUp(Readiness):
             self.seats[at], self.seats[to] = self.seats[to], self.seats[at]
             self.workspace.seat(self.seats)
 
+    def pick_up(self) -> None:
+        """Take hold of a person: `carry` changes no other seat but that of one more person."""
+        self._before = [*self.seats]
+
+    def carry(self, person: str, other: str) -> None:
+        """Carry a person to another's present seat; who sat there gets the person's own one."""
+        place, before = self.seats.index(other), self._before or self.seats
+        self.put_back()
+        self.change_seats(person, before[place])
+
+    def changes_with(self, person: str) -> str:
+        """Return who gets the seat of a person who is picked up, "" for nobody."""
+        other = (self._before or self.seats)[self.seats.index(person)]
+        return other if other != person else ""
+
+    def put_back(self) -> None:
+        """Seat everybody as before a person was picked up."""
+        if self.world is None and self._before is not None:
+            self.seats = [*self._before]
+            self.workspace.seat(self.seats)
+
     @property
     def teams_play(self) -> bool:
         """Whether teams take part instead of individuals."""
@@ -121,13 +143,15 @@ class SetUp(Readiness):
     def add(self, name: str, *, guest: bool) -> None:
         """Add a person from now on, or a guest for today, as long as the robot is off.
 
-        Does nothing if `teams_play`.
+        Everybody else stays at their table. Does nothing if `teams_play`.
 
         Raises:
             TangyError: there is no free seat, or the name cannot be given.
         """
         if self.world is None and not self.teams_play:
-            self.seats.append(let_join(self.workspace, name, guest=guest))
+            self._before = None
+            person = let_join(self.workspace, name, guest=guest)
+            self._sit(person, self.workspace.room.next_place(len(self.seats)))
 
     def join(self, joins: Joins) -> StaffNote | None:
         """Add a person, perhaps on a seat or at a table; return why they cannot join.
@@ -148,10 +172,14 @@ class SetUp(Readiness):
         if joins.table:
             place = workspace.room.at_tables(count)[joins.table - 1][-1]
         if place >= 0 and len(self.seats) == count:
-            self.seats.insert(place, self.seats.pop())
+            self._sit(self.seats.pop(workspace.room.next_place(count - 1)), place)
             self._moved = True
-            workspace.seat(self.seats)
         return None
+
+    def _sit(self, person: str, place: int) -> None:
+        """Seat a person who has no seat at a place, from 0; those behind move up."""
+        self.seats.insert(place, person)
+        self.workspace.seat(self.seats)
 
     def take_duty(self, name: str) -> None:
         """Set who is on duty, and keep it for the next session.

@@ -41,6 +41,7 @@ NAME_DETAIL = "Tangy calls people by this name."
 LOOKS = "Tangy looks. One moment ..."
 STILL_BUSY = "One moment: Tangy is still busy."
 CARRIED = "{}: the arrows go to another seat, space puts down."
+CHANGES = "{} and {} change seats? Space: yes, esc: no."
 BENCH_CARD = "On the bench nobody holds a card up. Tangy reads cards in the game."
 BENCH_FACE = "On the bench nobody comes to Tangy. It sees people in the game."
 FACE_HOW = "Stand in front of Tangy, one person at a time."
@@ -92,6 +93,15 @@ def robot_words(check: Check) -> str:
 def people_words(setup: SetUp) -> str:
     """Tell how many people are here."""
     return f"{len(setup.seats) - len(setup.away)} of {len(setup.seats)} are here"
+
+
+def carried_words(setup: SetUp, person: str) -> str:
+    """Tell how to carry a person who is picked up, and who changes seats with them."""
+    if setup.world is not None:
+        return SEATED
+    name = setup.workspace.name
+    other = setup.changes_with(person)
+    return CHANGES.format(name(person), name(other)) if other else CARRIED.format(name(person))
 
 
 def patterns_words(setup: SetUp) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tangy_tui.app.readiness import Check
@@ -40,6 +42,18 @@ def test_a_person_is_added_on_the_seat_that_staff_name(
     assert [person for person in setup.seats if person in BEFORE] == BEFORE
     assert list(workspace.names) == setup.seats  # the seats are those of the game
     assert (setup.seats[seat - 1] in guest_ids(workspace.store)) is line.startswith("guest")
+
+
+def test_everybody_else_stays_at_their_table_if_a_person_is_added(data_folder: Path) -> None:
+    workspace = Workspace(data_folder, users=13)
+    setup = SetUp.of(workspace)
+    before = setup.tables
+    setup.add("Anna", guest=True)
+    assert [len(table) for table in before] == [5, 4, 4]
+    assert [len(table) for table in setup.tables] == [5, 5, 4]
+    assert all(set(old) <= set(new) for old, new in zip(before, setup.tables, strict=True))
+    assert list(workspace.names) == setup.seats
+    workspace.close()
 
 
 def test_a_line_can_say_of_several_people_that_they_left(workspace: Workspace) -> None:

@@ -12,6 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.screen import Screen
+from textual.widget import Widget
 from textual.widgets import Static
 
 from tangy_tui.text.keys import DIGIT_SHOWN, HELP_KEYS, with_keys
@@ -52,11 +53,16 @@ def help_for(screen: Screen[Any]) -> Help:
     for one in listed(screen):
         word = f"  ({one.word})" if typing and one.word and one.word != one.name.lower() else ""
         (everywhere if one.everywhere else here).setdefault(f"{one.name}{word}", one.key)
-    boxes = (str(box.border_title or "") for box in screen.query(".box"))  # a dialog's
+    boxes = (_title(box) for box in screen.query(".box"))  # a dialog's
     title = str(screen.TITLE or next(filter(None, boxes), "Tangy"))
-    if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
-        title = f"{title} · {focused.border_title}"
+    if focused is not None and (own := _title(focused)):
+        title = f"{title} · {own}"
     return Help(title, tuple(paragraphs), _pairs(here), _pairs(everywhere))
+
+
+def _title(widget: Widget) -> str:
+    """Return the title of a widget without its markup."""
+    return Content.from_markup(widget.border_title or "").plain
 
 
 def _yes(screen: Screen[Any]) -> str:

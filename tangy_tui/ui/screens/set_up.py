@@ -56,12 +56,12 @@ class SetUpScreen(TangyScreen[bool]):
     HELP = (
         "Set a game up from top to bottom. Up and down choose a line, left and right a table. On a "
         "person Enter says whether they are here; space takes hold of them, the arrows carry them "
-        "to another seat, and space lets them go. {join} adds a person or a guest, {rename} gives "
-        "a person another name. On a choice Enter, left and right change it; a number adds what "
-        "the game is played for, or takes it away. Enter on Robot switches Tangy on: it stands "
-        "still. Then Enter on Cards lets it read a card that you hold before it, Enter on Faces "
-        "lets it look who is there, Enter on Sound lets it speak, and Enter on Tablet shows the "
-        "address. {begin} begins the game: nothing moves before."
+        "to another seat, and space lets them go; esc puts them back. {join} adds a person or a "
+        "guest, {rename} gives a person another name. On a choice Enter, left and right change it; "
+        "a number adds what the game is played for, or takes it away. Enter on Robot switches "
+        "Tangy on: it stands still. Then Enter on Cards lets it read a card that you hold before "
+        "it, Enter on Faces lets it look who is there, Enter on Sound lets it speak, and Enter on "
+        "Tablet shows the address. {begin} begins the game: nothing moves before."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bind("begin"),
@@ -184,19 +184,18 @@ class SetUpScreen(TangyScreen[bool]):
         self._show()
 
     def on_set_up_list_carried(self, event: SetUpList.Carried) -> None:
-        """Swap the seats of two people."""
+        """Show a person who is picked up at another's seat."""
         event.stop()
-        if self.setup.world is not None:
-            self._say(text.SEATED)
-        self.setup.change_seats(event.line.id, event.to.id)
+        self.setup.carry(event.line.id, event.to.id)
+        self._say(text.carried_words(self.setup, event.line.id))
         self._show()
 
     def on_set_up_list_held(self, event: SetUpList.Held) -> None:
         """Explain how to move the person who is picked up."""
         event.stop()
-        self._say(
-            text.CARRIED.format(self.setup.workspace.name(event.person)) if event.person else ""
-        )
+        if event.person:
+            self.setup.pick_up()
+        self._say(text.carried_words(self.setup, event.person) if event.person else "")
 
     def on_set_up_list_entered(self, event: SetUpList.Entered) -> None:
         """Change the line at the cursor by Enter."""
@@ -255,6 +254,7 @@ class SetUpScreen(TangyScreen[bool]):
             why = text.SEATED if self.setup.world is not None else text.TEAMS_PLAY
             self._say(why)
         elif not self._busy:
+            self.query_one(SetUpList).put_down()
             self.run_worker(self._ask(self._join), name="join", group="check")
 
     def action_rename(self) -> None:
@@ -373,8 +373,14 @@ class SetUpScreen(TangyScreen[bool]):
             self.close(True)
 
     def action_leave(self) -> None:
-        """Close the screen, after a question if choices would be lost; Tangy goes off again."""
-        if not self._busy:
+        """Put a person back who is picked up; else close the screen, and switch Tangy off again.
+
+        If choices would be lost, ask first.
+        """
+        if self.query_one(SetUpList).put_down():
+            self.setup.put_back()
+            self._show()
+        elif not self._busy:
             self.run_worker(self._leave(), name="leave", group="leave", exclusive=True)
 
     async def _leave(self) -> None:

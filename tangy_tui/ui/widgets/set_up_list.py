@@ -48,7 +48,8 @@ class SetUpLine:
 class SetUpList(Choosable):
     """The lines of the set-up; Enter, left and right act on the line at the cursor.
 
-    Space picks a person up; the arrows then move them to other seats until they are put down.
+    Space picks a person up; the arrows then carry them to other seats until they are put down,
+    or back.
     """
 
     ALLOW_MAXIMIZE = False
@@ -73,7 +74,7 @@ class SetUpList(Choosable):
             super().__init__()
 
     class Carried(Message):
-        """A person was moved to another's seat."""
+        """A person who is picked up was carried to another's seat."""
 
         def __init__(self, line: SetUpLine, to: SetUpLine) -> None:
             self.line, self.to = line, to
@@ -142,11 +143,16 @@ class SetUpList(Choosable):
         else:
             self.action_tell()
 
+    def put_down(self) -> bool:
+        """Put down the person who is picked up; False: nobody is."""
+        held = self._carries
+        if held:
+            self.action_carry()
+        return held
+
     def action_tell(self) -> None:
         """Choose the line at the cursor, or put down the person who is picked up."""
-        if self._carries:
-            self.action_carry()
-        else:
+        if not self.put_down():
             super().action_tell()
 
     def _carry_to(self, to: SetUpLine) -> None:
