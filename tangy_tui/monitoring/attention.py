@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_records import GameChange
+from tangy_profiles.past_game import OpenRequests
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
@@ -191,6 +192,23 @@ def _count_requests(
 def _is_with(done: Done, person: str) -> bool:
     """Return whether the robot left this person while their request was still open."""
     return done.state.place == person and done.after.closed != person
+
+
+def waiting_at_calls_first(replay: GameReplay) -> list[int]:
+    """Return how many people waited each time that calls came before the next visit."""
+    requests, found = OpenRequests(), list[int]()
+    for moment in replay.moments:
+        match moment.what:
+            case GameChange() as change:
+                if change.what == "calls first":  # somebody waits, or it would not be due
+                    found.append(max(1, len(requests.people)))
+                requests.change(change)
+            case Done() as done:
+                called = done.draws and done.completed
+                requests.step(done.state, done.after, called=called)
+            case _:
+                pass
+    return found
 
 
 def calls_in(replay: GameReplay) -> list[Call]:

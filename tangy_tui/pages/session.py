@@ -113,7 +113,7 @@ def session_page(session: Session, *, full: bool = True) -> str:
     parts += [*player_facts_part(session), *calls_part(session)]
     parts += [*staff_part(session), *([] if full else faults_part(session))]
     few = max(1, min(FEW_DRAWN, FEW_ROWS // max(1, len(session.people))))
-    parts += _timelines(session, MOST_DRAWN if full else few)
+    parts += _timelines(session, MOST_DRAWN if full else few, full=full)
     if full:
         parts += [*responses_part(session), *_faults(session), *_tables(session)]
     return document(
@@ -183,12 +183,12 @@ def _care(session: Session) -> Iterator[str]:
         )
 
 
-def _timelines(session: Session, most: int) -> Iterator[str]:
+def _timelines(session: Session, most: int, *, full: bool) -> Iterator[str]:
     numbers = _numbers(session)
     drawn = session.replays[-most:]
     yield f'<div class="game">{heading(say.WHEN)}'
     if len(drawn) < len(session.replays):
-        yield paragraph(say.drawn_words(most, len(session.replays)))
+        yield paragraph(say.drawn_words(most, len(session.replays), full=full))
     played, stages = "", dict[str, str]()
     for index, replay in enumerate(drawn):
         if index:

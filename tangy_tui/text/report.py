@@ -19,6 +19,7 @@ from tangy_tui.monitoring.attention import (
     attention_in,
     calls_in,
     visiting,
+    waiting_at_calls_first,
 )
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
@@ -43,7 +44,8 @@ NOT_REACHED = "not reached"
 ASKED_LAST = "asked as the game ended"
 FEW_WAITS = 3
 """Up to so many waits are told one by one."""
-LONG_WAIT = 300.0  # s from which a wait needs attention
+LONG_WAIT = 270.0
+"""A longer wait (s) is told as 5 minutes or more, and needs attention."""
 
 
 SET_UP = "in which Tangy set itself up for somebody new"
@@ -283,12 +285,17 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
     if visits:
         each = [who if n == 1 else f"{who} ({often(n)})" for who, n in visits.items()]
         lines.append(f"Tangy visited {listed(each)} although they had not asked.")
-    if first := sum(change.what == "calls first" for _, change in changes):
-        lines.append(
-            f"Many people asked at the same time. {often(first).capitalize()}, Tangy called some "
-            "numbers before it went to the next one."
-        )
+    if waited := [count for replay in games for count in waiting_at_calls_first(replay)]:
+        lines.append(_calls_first_words(waited))
     return lines
+
+
+def _calls_first_words(waited: Sequence[int]) -> str:
+    """Tell how often calls came first, and how many people waited then."""
+    least, most = min(waited), max(waited)
+    who = counted(most, "person", "people")
+    who = who if least == most else f"{least} to {who}"
+    return f"{often(len(waited)).capitalize()}, Tangy called some numbers first while {who} waited."
 
 
 def _left_words(replay: GameReplay, won: Moment, change: GameChange, name: Name) -> str:

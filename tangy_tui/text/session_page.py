@@ -34,6 +34,7 @@ BELIEFS = (
     "that was used: before the session (ring) and after it (dot), with the 90% interval."
 )
 FAULTS = "Faults, and what was done about them"
+TO_DRAW_MORE = ", to save paper. With --full, tangy report session --html draws up to 24"
 NO_FAULTS = "There were no faults."
 UNSURE = "Where Tangy did not know what to do"
 UNSURE_COLUMNS = ("game", "step", "what came of it")
@@ -57,11 +58,12 @@ def how_long(session: Session) -> str:
     return f"{how_long_words(session)}."
 
 
-def drawn_words(drawn: int, games: int) -> str:
+def drawn_words(drawn: int, games: int, *, full: bool) -> str:
     """Tell how many of the games are drawn."""
-    if drawn == 1:
-        return f"The last of {games} games is drawn."
-    return f"The last {drawn} of {games} games are drawn."
+    last = (
+        f"The last of {games} games is" if drawn == 1 else f"The last {drawn} of {games} games are"
+    )
+    return f"{last} drawn{'' if full else TO_DRAW_MORE}."
 
 
 def game_caption(number: int, *, timed: bool) -> str:

@@ -14,11 +14,9 @@ from tangy_tui.monitoring.done import Done
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.replay import GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
-from tangy_tui.text.numbers import listed
 from tangy_tui.text.situations import Name
 from tangy_tui.text.staff_actions import (
     by_staff,
-    card_words,
     chosen_words,
     did_words,
     with_behaviour,
@@ -41,8 +39,6 @@ STAFF_MOVES: Mapping[MoveKind, str] = {
 """Words for the actions of staff about a fault."""
 
 
-ONE_ROUND = timedelta(minutes=2)
-"""Cards that staff have checked in vain one after the other, in this time, share a row."""
 SHOWN_EXPERT = "saw whom to call"
 """For "expert called", if Tangy called nobody itself."""
 
@@ -56,27 +52,18 @@ def staff_rows(replays: Iterable[GameReplay], name: Name) -> list[tuple[str, str
             same = act.did == before.did and act.who == before.who and act is not before
             if same and act.did == "pace":
                 rows[-1] = act  # keys change it step by step: the last one counts
-            elif same and act.did == "claim wrong" and act.at - before.at <= ONE_ROUND:
-                rows[-1] = before._replace(cards=(*before.cards, *act.cards))
             else:
                 rows.append(act)
-    return [(time_of_day(one.at.isoformat()), one.who, _act_words(one)) for one in rows]
-
-
-def _act_words(act: _Act) -> str:
-    if len(act.cards) < 2:
-        return act.words
-    return f"had {listed(act.cards)} checked: none of them wins yet"
+    return [(time_of_day(one.at.isoformat()), one.who, one.words) for one in rows]
 
 
 class _Act(NamedTuple):
-    """What a member of staff did, and which cards they had checked, if they did so."""
+    """What a member of staff did, and when."""
 
     at: datetime
     who: str
     words: str
     did: str = ""
-    cards: tuple[str, ...] = ()
 
 
 def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[_Act]:
@@ -89,8 +76,7 @@ def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[_Act]:
         if (told := _staff_words(moment, replay.activity, name, called)) is not None:
             act = _Act(at, *told)
             if isinstance(what, Noted):
-                card = card_words(what.detail, name(what.person) if what.person else "")
-                act = act._replace(did=what.did, cards=(card,))
+                act = act._replace(did=what.did)
             yield act
         if isinstance(what, Moved) and what.move.answer:
             answered = (what.move.answer, what.move.target)

@@ -192,6 +192,12 @@ def test_only_who_waits_at_the_end_of_the_session_is_told_as_still_waiting() -> 
     assert told(long, fine) == ["Waited long for help: ann, 8 min."]
 
 
+def test_waits_that_are_told_alike_are_looked_after_alike() -> None:
+    emil, hugo = (Attention(who, waits=[wait], visits=1) for who, wait in (("E", 301), ("H", 271)))
+    ida = Attention("I", waits=[269.0], visits=1)
+    assert care_lines([emil, hugo, ida], str) == ["Waited long for help: E and H, 5 min."]
+
+
 def test_who_asks_as_the_game_ends_is_not_told_as_waiting() -> None:
     ann = Attention("Ann", waits=[30.0], open=[0.2], visits=1, seconds=5.0)
     assert care_lines([ann], str) == []

@@ -11,6 +11,7 @@ import pytest
 from tangy_profiles.activity import load_activity
 from tangy_profiles.game_records import CallMade, GameChange, MoveKind, RecoveryEvent
 from tangy_profiles.staff_records import StaffActionKind
+from tangy_profiles.state import FRONT
 from tangy_tui.monitoring.attention import Attention
 from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.house import PersonInGame, PersonOverTime, RobotLog
@@ -22,7 +23,9 @@ from tangy_tui.text.fault_moves import MOVES, move_words
 from tangy_tui.text.house import GAME_COLUMNS, game_rows, strategy_rows
 from tangy_tui.text.report import changes_lines
 from tangy_tui.text.results import response_line
+from tangy_tui.text.session_page import drawn_words
 from tangy_tui.text.staff_report import staff_rows
+from tests.monitoring.test_attention import BEGUN, replay_of, state
 from tests.monitoring.test_taking_part import ONE, moment, moves
 
 NAMES = {"user1": "Ada", "user2": "Bob"}
@@ -87,21 +90,44 @@ def checked(minute: float, person: str, card: str, *, wins: bool = False) -> Mom
     return moment(minute, Noted(did, "Nina", person=person, detail=card))
 
 
-def test_cards_checked_in_vain_one_after_the_other_share_a_row() -> None:
+def test_each_card_that_staff_have_checked_keeps_its_own_time() -> None:
     replay = GameReplay(
         ONE,
-        [
-            checked(1, "user1", "38"), checked(1.1, "user2", "21"), checked(1.2, "", "17"),
-            checked(1.3, "user1", "111", wins=True), checked(1.4, "user2", "220"),
-            checked(8, "user1", "38"),
-        ],
-    )  # fmt: skip
-    assert [what for _, _, what in staff_rows([replay], NAMES.__getitem__)] == [
-        "had Ada's card 38, Bob's card 21 and card 17 checked: none of them wins yet",
-        "had Ada's card 111 checked: it wins",
-        "had Bob's card 220 checked: it does not win yet",
+        [checked(1, "user1", "38"), checked(1.5, "", "17"), checked(2, "user2", "21", wins=True)],
+    )
+    rows = staff_rows([replay], NAMES.__getitem__)
+    assert [what for _, _, what in rows] == [
         "had Ada's card 38 checked: it does not win yet",
+        "had card 17 checked: it does not win yet",
+        "had Bob's card 21 checked: it wins",
     ]
+    assert [when[3:] for when, _, _ in rows] == ["01:00", "01:30", "02:00"]
+
+
+@pytest.mark.parametrize(
+    ("waited", "told"),
+    [
+        ((1,), "Once, Tangy called some numbers first while 1 person waited."),
+        ((2, 2), "Twice, Tangy called some numbers first while 2 people waited."),
+        ((2, 1), "Twice, Tangy called some numbers first while 1 to 2 people waited."),
+    ],
+)
+def test_the_report_counts_who_waited_while_calls_came_first(
+    waited: tuple[int, ...], told: str
+) -> None:
+    asking = state("ann", ["bob"]), state("ann", ["ann", "bob"])
+    games = []
+    for count in waited:
+        first = GameChange(game="g1", what="calls first", steps=1, number=2)
+        replay = replay_of(state(FRONT), asking[count - 1], state(FRONT))
+        replay.moments.insert(1, Moment(10.0, 1, BEGUN.isoformat(), first))
+        games.append(replay)
+    assert changes_lines(games, str) == [told]
+
+
+@pytest.mark.parametrize(("drawn", "full"), [(1, False), (2, False), (24, True)])
+def test_the_page_says_how_to_have_more_games_drawn(drawn: int, *, full: bool) -> None:
+    assert ("--full" in drawn_words(drawn, 30, full=full)) is not full
 
 
 @pytest.mark.parametrize(("count", "columns"), [(FEW_ROWS, False), (FEW_ROWS + 1, True)])
