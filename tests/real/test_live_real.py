@@ -112,7 +112,7 @@ def test_staff_can_watch_and_control_a_game_on_a_terminal(folder: Path) -> None:
         terminal.until("Who needs help?")
         terminal.type("\r")
         terminal.until("You asked for")
-        terminal.until("coming to you")
+        terminal.until("go to the user")  # its step is done
         terminal.type("\x18")
         assert "STOPPED" in terminal.until("STOPPED")
         terminal.type("\x1b")  # back to the staff view
