@@ -153,7 +153,7 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
 def strategy_rows(person: PersonOverTime) -> Iterator[tuple[str, ...]]:
     """Write one row for each strategy: how often it was used, and how often it worked.
 
-    It has its words of the session's report, and the name by which it is switched off.
+    It has its words of the session's report.
     """
     known = [answer for answer in person.answers if answer.complied is not None]
     activities = [one.replay.activity for one in person.games]
@@ -163,7 +163,7 @@ def strategy_rows(person: PersonOverTime) -> Iterator[tuple[str, ...]]:
     late = Counter(one.strategy for one in known if not one.complied and one.followed)
     for strategy, times in used.most_common():
         yield (
-            f"{ways[strategy]} ({strategy})" if strategy in ways else strategy,
+            ways.get(strategy, strategy),
             str(times),
             str(did[strategy]),
             str(late[strategy]),

@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
+import re
+
+from tangy_sim.worlds.injection import KINDS
+
 WHICH = "What should go wrong?"
 NONE_FOUND = "Nothing matches these letters."
 
 NOT_SIMULATED = "You can bring about faults in the simulated room only."
 NO_GAME = "No game is going on: press {next} to play one first."
+
+
+def happens_words(injected: str) -> str:
+    """Tell what happens in the room by an injected fault of the log, or by several planned ones.
+
+    Words that name no kind of fault stay as they are, such as those of an earlier version.
+    """
+    told = []
+    for one in injected.split(", "):
+        kind = KINDS.get(re.split("[@~]", one)[0])
+        told.append(one if kind is None else kind.words)
+    return ", ".join(told)
 
 
 def not_of_this_robot(kind: str, robot: str) -> str:

@@ -76,11 +76,6 @@ def joins_words(name: str) -> str:
     return f"{name} joins. Type: go on."
 
 
-def report_words(path: str) -> str:
-    """Tell where the report of an ended game is."""
-    return f"The report is in {path}."
-
-
 def kept_words(command: str) -> str:
     """Tell how to go on with a game for which the robot did not come on again."""
     return f"The game is kept. Go on with it by: {command}"

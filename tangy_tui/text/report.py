@@ -29,7 +29,7 @@ from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.numbers import counted, listed, often
-from tangy_tui.text.situations import Name
+from tangy_tui.text.situations import SOMEBODY, Name
 from tangy_tui.text.times import length, time_of_day
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def helped_words(one: Attention, activities: Iterable[Activity]) -> str:
     known = {b: a.behaviour_words(b) for a in activities for b in a.behaviours}
     parts = []
     for behaviour, times in one.helped.items():
-        words = known.get(behaviour, behaviour)
+        words = SOMEBODY.sub("them", known.get(behaviour, behaviour), count=1)
         parts.append(words if times == 1 else f"{words} ({times})")
     return ", ".join(parts) or "\N{EN DASH}"
 

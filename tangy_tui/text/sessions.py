@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 from tangy_profiles.reading import plain
 from tangy_tui.text.endings import ending_words
+from tangy_tui.text.injections import happens_words
 
 if TYPE_CHECKING:
     from tangy_tui.monitoring.fault import FaultStatus
@@ -33,7 +34,8 @@ def note_words(note: SessionNote) -> str:
         case "no times":
             return "An older Tangy kept no times within a game: those games are drawn by steps."
         case "brought about":
-            return f"Some faults were injected on purpose: {note.about}."
+            words = dict.fromkeys(map(happens_words, note.about.split("; ")))
+            return f"Some faults were brought about on purpose: {'; '.join(words)}."
         case forgotten:
             assert_never(forgotten)
 

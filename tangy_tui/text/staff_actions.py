@@ -11,6 +11,8 @@ from tangy_tui.app.card_news import BY as TANGY
 from tangy_tui.app.game_commands import AUTONOMY
 from tangy_tui.monitoring.replay import Noted
 from tangy_tui.text.control import autonomy_words
+from tangy_tui.text.injections import happens_words
+from tangy_tui.text.situations import addressed_step
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -45,7 +47,7 @@ def chosen_words(activity: Activity | None, behaviour: str, target: str, name: N
 
 
 def _told_to_do(does: str, person: str) -> str:
-    return f"told Tangy what to do: {does}{f' ({person})' if person else ''}"
+    return f"told Tangy what to do: {addressed_step(does, person)}"
 
 
 def action_line(noted: Noted, name: Name) -> str:
@@ -113,9 +115,9 @@ def did_words(noted: Noted, name: Name) -> str:
             whose = f"card {detail}" if detail else "another card"
             return f"told Tangy that {person} has {whose}"
         case "fault injected":
-            return f"brought about a fault: {detail}"
+            return f"brought about a fault: {happens_words(detail)}"
         case "fault lifted":
-            return f"ended a fault: {detail}"
+            return f"ended a fault: {happens_words(detail)}"
         case "noted":
             return f"noted: {_named(detail, name)}"
         case (
@@ -195,9 +197,9 @@ def action_words(noted: Noted, name: Name) -> str:
         case "program frozen":
             return f"the program was frozen for {detail} s"
         case "fault injected":
-            return f"a fault was injected: {detail}"
+            return f"a fault was injected: {happens_words(detail)}"
         case "fault lifted":
-            return f"a fault was lifted: {detail}"
+            return f"a fault was lifted: {happens_words(detail)}"
         case "faults planned":
             return f"faults will be injected: {detail}"
         case "noted":

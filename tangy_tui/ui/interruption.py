@@ -114,20 +114,16 @@ async def _report(program: Program, workspace: Workspace, past: PastGame) -> Non
     """Write the report of an ended game to the data folder, and show its path."""
     from tangy_tui.app.register import guest_ids
     from tangy_tui.monitoring.games import find_games, read_games
-    from tangy_tui.monitoring.session import read_session
-    from tangy_tui.pages import page
-    from tangy_tui.pages.session import session_page
     from tangy_tui.text.register import with_guests
+    from tangy_tui.text.session_reports import printed_page_words
     from tangy_tui.ui.dialogs.message import MessageDialog
+    from tangy_tui.ui.printed_report import write_page
 
-    activity, store = workspace.activity, workspace.store
+    store = workspace.store
     found = find_games(read_games(store), past.beginning.game)
     names = with_guests(workspace.names, guest_ids(store))
-    session = read_session(store, found, {activity.name: activity}, names)
-    path = store.folder / f"report-{past.beginning.game}.html"
     try:
-        page.write(path, session_page(session), "the report")
-        said = text.report_words(str(path))
+        said = printed_page_words(str(write_page(workspace, found, names)))
     except TangyError as error:
         said = str(error)
     await program.push_screen_wait(MessageDialog(said, title=text.TITLE))

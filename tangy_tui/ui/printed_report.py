@@ -28,5 +28,6 @@ def write_page(workspace: Workspace, games: Sequence[Game], names: Mapping[str, 
 
     began = games[0].at.astimezone()
     path = workspace.store.folder.absolute() / f"report-{began:%Y-%m-%d-%H%M}.html"
-    page.write(path, session_page(read_report(workspace, games, names)), "the report")
+    session = read_report(workspace, games, names)
+    page.write(path, session_page(session, full=False), "the report")
     return path

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -94,10 +95,13 @@ async def test_an_interrupted_game_can_be_ended_with_a_report(
         await asked(pilot)
         await pilot.press("down", "enter")
         await until(lambda: isinstance(pilot.app.screen, MessageDialog))
+        await until_shown(pilot, lambda: "Open it with a web browser" in pilot.text())
 
     (end,) = interrupted.store.events(GameEnding)
     (report,) = interrupted.store.folder.glob("report-*.html")
-    assert end.record.steps == STEPS and end.record.game in report.name
+    (begun,) = interrupted.store.events(GameBeginning)
+    at = datetime.fromisoformat(begun.at).astimezone()
+    assert end.record.steps == STEPS and report.name == f"report-{at:%Y-%m-%d-%H%M}.html"
 
 
 @pytest.mark.slow
