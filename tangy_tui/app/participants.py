@@ -104,9 +104,8 @@ class Participants:
             raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
         typed, names = wanted.title(), {p.name for p in self.people}
         meant = nearest(typed, names | {name.split()[0] for name in names})  # never guess a person
-        if not meant.startswith("did"):
-            meant = nearest(typed, names)
-        raise TangyError(plain(f"There is nobody called {wanted!r}: {meant}"))
+        near = f": {meant}" if meant.startswith("did") else "."  # there may be many people
+        raise TangyError(plain(f"There is nobody called {wanted!r}{near}"))
 
     def rename(self, person: Person, name: str) -> None:
         """Give a person a new name that nobody else has.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tangy_tui.app.inquiry_grammar import Inquiry, read_inquiry
+from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS, Inquiry, read_inquiry
 from tangy_tui.app.keymap import ACTIONS
 
 
@@ -52,6 +52,11 @@ def read_program(text: str) -> Perform | Inquiry | None:
 
 def read_screen(text: str) -> Perform | None:
     """Parse words as a command that a screen carries out like a key."""
+    words = " ".join(text.split()).casefold().rstrip(" ?.!")
+    if words in WHOSE_CARDS:
+        return Perform("whose_card")
+    if words in WHO_IS_HERE:
+        return Perform("presence")
     word = read_program(text)
     if isinstance(word, str):
         return Perform(word) if word in ("why", "help", "phrases") else None

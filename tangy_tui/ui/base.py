@@ -229,8 +229,15 @@ class Dialog(ModalScreen[ResultT]):
 ACTIONS = {"palette": "command_palette", "draw": "draw_again", "begin": "play"}
 """Textual's names of keymap actions, if they differ."""
 
-OF_SCREENS = ("why",)
+OF_SCREENS = ("why", "whose_card", "presence")
 """Actions that each screen carries out in its own way."""
+
+
+def can_perform(screen: Screen[Any], id: str) -> bool:
+    """Return whether a screen, or the app for it, has a keymap action now."""
+    if id not in OF_SCREENS:
+        return True
+    return hasattr(screen, f"action_{id}") and screen.check_action(id, ()) is not False
 
 
 async def perform(screen: Screen[Any], id: str, on: bool | None = None) -> None:

@@ -137,6 +137,9 @@ class GamePicture:
                     room.put(state.place)
                     transcript = self._screen.query_one(Transcript)
                     transcript.clear(resumed, earlier_steps_words(resumed))
+                    if isinstance(event, GameBegun) and event.number > 1:
+                        app = self._screen.app
+                        app.call_later(app.clear_notifications)  # those of the game before
                     self.grounds.clear()
                     self.lesson = ""
                     self._stage = self._workspace.activity.in_words(state.situation)

@@ -27,6 +27,7 @@ from tests.interaction.gaps import learnt, without
 from tests.pilot.conftest import SMALL, Run, StillClock, TangyPilot
 from tests.pilot.test_screens_asking import answer, asked, gap
 from tests.shown import log_demonstration
+from tests.support.waiting import until_shown
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 FEW = ForestSettings(trees=5)
@@ -123,6 +124,19 @@ async def test_another_game_starts_running_after_a_paused_one(
         assert (status.game, status.note) == (2, "x1000")
         while screen.query_one(Transcript).count < 3:
             await pilot.pause(0.02)
+
+
+@pytest.mark.slow
+async def test_another_game_clears_the_messages_of_the_one_before(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy), notifications=True) as pilot:
+        screen = await over(pilot)
+        screen.notify("You ended the game.", timeout=600)
+        await until_shown(pilot, lambda: "You ended the game." in told(pilot))
+        screen.picture.tell(screen.control.begin(), pace=0)
+        assert screen.control.supervision.games == 2
+        await until_shown(pilot, lambda: "You ended the game." not in told(pilot))
 
 
 # ------------------------------------------------------------------------- while Tangy asks

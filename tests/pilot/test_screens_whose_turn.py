@@ -11,7 +11,10 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.game_commands import StopRobot
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.cards import WHOSE
+from tangy_tui.text.typed_commands import WHO_IS_HERE
 from tangy_tui.text.whose_turn import IN_DETAIL, WHOSE_TURN
+from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
@@ -123,3 +126,21 @@ async def test_a_question_about_a_person_is_no_answer_to_tangy(
         pilot.type(*"why", "enter")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, WhyDialog))
         assert "Tangy waits for your answer. Nobody has shown Tangy" in shown(pilot)
+
+
+@pytest.mark.slow
+async def test_cards_and_people_can_be_asked_for_in_words(
+    run: Run, program: Program, link: HeldLink, workspace: Workspace
+) -> None:
+    async with run(app=program, size=SMALL) as pilot:
+        await paused_after(pilot, link, 2)
+        for words, question in (("cards", WHOSE), ("who is here", WHO_IS_HERE)):
+            await typed(pilot, words)
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+            assert question in shown(pilot)
+            await pilot.press("escape")
+            await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
+        one, another = workspace.name("user2"), workspace.name("user4")
+        await typed(pilot, f"left {one} and {another}")
+        plan = live(pilot).control.plan
+        await until_shown(pilot, lambda: set(plan.away) == {"user2", "user4"})

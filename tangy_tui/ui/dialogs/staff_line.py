@@ -12,16 +12,14 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.game_commands import GameCommand
-from tangy_tui.app.inquiry_grammar import AsksAbout
-from tangy_tui.app.screen_grammar import Perform
+from tangy_tui.app.typed_line import Typed
 from tangy_tui.text import typed_commands as text
 from tangy_tui.text.telling import TELL, TELL_HELP, TELL_KEYS, telling_words
 from tangy_tui.ui.dialogs.line import LineDialog
 from tangy_tui.ui.messages import Stop
 
 
-class CommandDialog(LineDialog[GameCommand | Perform | AsksAbout]):
+class CommandDialog(LineDialog[Typed]):
     """Parses a command; a line that is none stays, with an explanation and similar commands.
 
     It is selected then, so that the next letter replaces it; Tab replaces it by a similar command.
@@ -37,7 +35,7 @@ class CommandDialog(LineDialog[GameCommand | Perform | AsksAbout]):
 
     def __init__(
         self,
-        read: Callable[[str], GameCommand | Perform | AsksAbout | None],
+        read: Callable[[str], Typed | None],
         begun: str,
         title: str,
         words: str,
@@ -56,7 +54,7 @@ class CommandDialog(LineDialog[GameCommand | Perform | AsksAbout]):
         self._read, self._similar = read, similar
         self._near: list[str] = []  # the similar commands, in the order of the next Tabs
 
-    def taken(self, line: str) -> GameCommand | Perform | AsksAbout:
+    def taken(self, line: str) -> Typed:
         """Parse a command; raises TangyError if the line is none."""
         self._near = []
         command = self._read(line)

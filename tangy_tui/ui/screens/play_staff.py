@@ -33,12 +33,13 @@ from tangy_tui.app.game_commands import (
     asked_for,
 )
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
+from tangy_tui.app.inquiry_grammar import AsksAbout
 from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
-from tangy_tui.app.screen_grammar import Perform, read_screen
+from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.staff_notes import REFUSALS, Proposal, StaffNote
+from tangy_tui.app.typed_line import Several, Typed, read_typed
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
@@ -57,7 +58,7 @@ from tangy_tui.text.typed_commands import (
     example_words,
 )
 from tangy_tui.text.watching import stopped_by_guest
-from tangy_tui.ui.base import perform
+from tangy_tui.ui.base import can_perform, perform
 from tangy_tui.ui.claiming import ask_whose
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -248,7 +249,7 @@ class PlayStaff(PlayPanels):
         names = [*self._workspace.names.values()]
         read = command_reader(activity, self.id_of)
         dialog = CommandDialog(
-            lambda typed: read(typed) or read_question(typed, self.id_of) or read_screen(typed),
+            lambda typed: read_typed(typed, read, self.id_of, lambda id: can_perform(self, id)),
             begun,
             *(asked or (TITLE, self._told(example_words(activity.rules)))),
             lambda typed: nearest_commands(typed, names, activity.rules),
@@ -256,7 +257,7 @@ class PlayStaff(PlayPanels):
         typed = self.ask(dialog)
         self.run_worker(self._take_typed(typed), name="type", group="type", exclusive=True)
 
-    async def _take_typed(self, typed: Awaitable[GameCommand | Perform | AsksAbout | None]) -> None:
+    async def _take_typed(self, typed: Awaitable[Typed | None]) -> None:
         command = await typed
         if isinstance(command, Perform):
             await perform(self, command.action, command.on)
@@ -265,7 +266,8 @@ class PlayStaff(PlayPanels):
         elif isinstance(command, AsksAbout):
             self.answer_about(command)
         elif command is not None:
-            self._do_typed(command)
+            for one in command.commands if isinstance(command, Several) else (command,):
+                self._do_typed(one)
 
     def action_presence(self) -> None:
         """Ask staff who has come or left."""
@@ -336,11 +338,8 @@ class PlayStaff(PlayPanels):
 
     async def _propose(self, proposal: Proposal) -> None:
         """Ask staff to approve the next behaviour, or to choose another."""
-        dialog = ConfirmDialog(
-            *confirmed_words(proposal, self._workspace.name),
-            yes="do it",
-            no="say what else",
-        )
+        words = confirmed_words(proposal, self._workspace.name)
+        dialog = ConfirmDialog(*words, yes="do it", no="say what else")
         does = await self.app.push_screen_wait(dialog)
         if not self.control.stopped:
             self._do(Confirm(does))

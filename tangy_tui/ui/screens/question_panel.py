@@ -16,12 +16,13 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
-from tangy_tui.app.command_grammar import read_command
+from tangy_tui.app.command_grammar import command_reader
 from tangy_tui.app.game_commands import Accept, EndGame, GameCommand, GiveBack, StopRobot, asked_for
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
-from tangy_tui.app.screen_grammar import Perform, read_screen
+from tangy_tui.app.inquiry_grammar import AsksAbout
+from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.app.typed_line import Several, read_typed
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook
@@ -39,7 +40,7 @@ from tangy_tui.text import questions as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.refusals import not_understood_words, refused_words
 from tangy_tui.text.situations import ALL_RIGHT
-from tangy_tui.ui.base import Dialog, give_keys_back, perform
+from tangy_tui.ui.base import Dialog, can_perform, give_keys_back, perform
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
@@ -268,17 +269,15 @@ class AskingPanel(Vertical):
         """Handle an answer or a command that was typed here, or before the question was visible."""
         self._by_voice = False
         try:
-            rules = self._workspace.activity.rules
-            command = read_command(typed, self._find_person, self._phrasebook.game, rules)
             find = self._find_person
-            asks = None if command is not None else read_question(typed, find)  # "Will is away"
-            word = asks or read_screen(typed)
+            read = command_reader(self._workspace.activity, find, asks=lambda: True)
+            command = read_typed(typed, read, find, lambda id: can_perform(self.screen, id))
         except TangyError as error:
             self._return(typed, str(error))
             return
-        if word is not None:
+        if isinstance(command, Perform | AsksAbout):
             self.query_one(CommandBar).ready()
-            self._show(word)
+            self._show(command)
         elif command is None or (isinstance(command, Accept) and not self._acceptable):
             if self._held:
                 self._return(typed, text.STOPPED_FIRST)
@@ -286,7 +285,8 @@ class AskingPanel(Vertical):
                 self._tell(self._answers.say(Say(typed)))
         else:
             self.query_one(CommandBar).ready()
-            self._carry_out(command)
+            for one in command.commands if isinstance(command, Several) else (command,):
+                self._carry_out(one)
 
     def _show(self, word: Perform | AsksAbout) -> None:
         """Show an explanation, or run a key's action."""

@@ -1,0 +1,49 @@
+"""What staff type on the screen of a game: commands, questions about people, and keys in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
+from tangy_tui.app.plan_grammar import lines_of
+from tangy_tui.app.screen_grammar import Perform, read_screen
+
+
+@dataclass(frozen=True, slots=True)
+class Several:
+    """Commands that one line gives, one for each person that it names."""
+
+    commands: tuple[GameCommand, ...]
+
+
+Typed: TypeAlias = GameCommand | Several | AsksAbout | Perform
+
+
+def read_typed(
+    typed: str,
+    read: Callable[[str], GameCommand | None],
+    find_person: Callable[[str], str],
+    can: Callable[[str], bool],
+) -> Typed | None:
+    """Parse a line that staff typed; None if it is nothing of this.
+
+    Args:
+        typed: the line.
+        read: parses a command.
+        find_person: returns the id of a person by name or id.
+        can: returns whether the screen has an action of the keymap.
+
+    Raises:
+        TangyError: it resembles a command, but a part of it is wrong; one sentence.
+    """
+    each = [read(line) for line in lines_of(typed, read)]
+    commands = tuple(command for command in each if command is not None)
+    if len(commands) > 1:
+        return Several(commands)
+    if commands:
+        return commands[0]
+    word = read_question(typed, find_person) or read_screen(typed)
+    return None if isinstance(word, Perform) and not can(word.action) else word
