@@ -32,14 +32,14 @@ def not_of_this_robot(kind: str, robot: str) -> str:
 
 def comes_later_words(kind: str) -> str:
     """Tell that a fault will become visible later."""
-    return f"{kind} comes as soon as it can show."
+    return f"This comes as soon as it can show: {happens_words(kind)}."
 
 
 def lifted_words(kind: str) -> str:
     """Tell that a fault was lifted."""
-    return f"Lifted: {kind}."
+    return f"Lifted: {happens_words(kind)}."
 
 
 def injected_words(kind: str) -> str:
     """Tell that a fault was injected."""
-    return f"Brought about: {kind}."
+    return f"Brought about: {happens_words(kind)}."

@@ -230,7 +230,8 @@ async def test_a_pending_injection_can_be_lifted(
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         pilot.type(*"never-complies", "enter")
         await until_shown(pilot, lambda: pilot.app.screen is screen)
-        assert "comes as soon as it can show" in sentences(screen)[-1]
+        told = sentences(screen)[-1]
+        assert "comes as soon as it can show: a person says no to every request." in told
         await pilot.press("f")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         assert "to come: enter lifts it" in pilot.text()
