@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from dataclasses import replace
 from types import FrameType
@@ -357,11 +358,13 @@ def test_an_exact_phrase_needs_few_function_calls(store: Store) -> None:
         calls += event == "call" and "tangy" in frame.f_globals.get("__name__", "")
 
     before = sys.getprofile()
+    gc.disable()  # or it counts what closes objects of earlier tests
     sys.setprofile(count)
     try:
         asked = teaching.apply(Say("call a number"))
         done = teaching.apply(YES)
     finally:
         sys.setprofile(before)
+        gc.enable()
     assert isinstance(asked[0], Asked) and isinstance(done[0], Executed)
     assert 0 < calls <= 364
