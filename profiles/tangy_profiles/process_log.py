@@ -28,6 +28,8 @@ LOGS = {
     "bench.log": "the device simulator (--bench)",
 }
 """The log files of a data folder, and their processes."""
+PACKAGES = ("tangy_tui", "tangy_sim", "tangy_hw", "tangy_profiles")
+"""The packages whose messages are logged."""
 LEVEL = "TANGY_LOG"
 """The environment variable of the log level: debug, info (default), warning, error."""
 NO_COMMAND = "-"
@@ -115,18 +117,21 @@ def log_to_stderr() -> None:
 @contextmanager
 def logging_to(folder: Path) -> Iterator[None]:
     """Log to a data folder within this context."""
+    before = {name: logging.getLogger(name).level for name in PACKAGES}
     handler = _begin(_File(folder / PROGRAM_LOG))
     try:
         yield
     finally:
         logging.getLogger().removeHandler(handler)
         handler.close()
+        for name, level in before.items():
+            logging.getLogger(name).setLevel(level)
 
 
 def _begin(handler: logging.Handler) -> logging.Handler:
     wanted: Any = logging.getLevelNamesMapping().get(os.environ.get(LEVEL, "").upper())
     handler.setLevel(logging.INFO if wanted is None else wanted)
-    for name in ("tangy_tui", "tangy_sim", "tangy_hw", "tangy_profiles"):
+    for name in PACKAGES:
         logging.getLogger(name).setLevel(handler.level)
     logging.getLogger().addHandler(handler)
     return handler

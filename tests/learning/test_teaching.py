@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections import Counter
 from dataclasses import replace
 from types import FrameType
 
@@ -351,11 +352,12 @@ def test_an_exact_phrase_needs_few_function_calls(store: Store) -> None:
     """A fifth of the 1,822 calls that it took while it also ranked unneeded alternatives."""
     teaching = begun(store)
     teach(teaching, "greet everyone", "call a number")  # finds the lines of the cards, once
-    calls = 0
+    calls = Counter[str]()
 
     def count(frame: FrameType, event: str, _: object) -> None:
-        nonlocal calls
-        calls += event == "call" and "tangy" in frame.f_globals.get("__name__", "")
+        module = frame.f_globals.get("__name__", "")
+        if event == "call" and "tangy" in module:
+            calls[f"{module}.{frame.f_code.co_qualname}"] += 1
 
     before = sys.getprofile()
     gc.disable()  # or it counts what closes objects of earlier tests
@@ -367,4 +369,4 @@ def test_an_exact_phrase_needs_few_function_calls(store: Store) -> None:
         sys.setprofile(before)
         gc.enable()
     assert isinstance(asked[0], Asked) and isinstance(done[0], Executed)
-    assert 0 < calls <= 364
+    assert 0 < calls.total() <= 364, calls

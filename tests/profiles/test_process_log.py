@@ -17,6 +17,7 @@ from tangy_profiles.process_log import (
     LEVEL,
     LOGS,
     NO_COMMAND,
+    PACKAGES,
     PROGRAM_LOG,
     command_id,
     logging_to,
@@ -84,6 +85,13 @@ def test_the_log_is_private_and_bounded(tmp_path: Path) -> None:
     path = tmp_path / PROGRAM_LOG
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert path.stat().st_size <= KEPT + 200 and lines(tmp_path)[-1].endswith("one more")
+
+
+def test_what_was_not_logged_before_is_not_logged_afterwards(tmp_path: Path) -> None:
+    before = {name: logging.getLogger(name).level for name in PACKAGES}
+    with logging_to(tmp_path):
+        assert LOG.isEnabledFor(logging.INFO)
+    assert {name: logging.getLogger(name).level for name in PACKAGES} == before
 
 
 def test_no_log_file_is_created_without_a_message(tmp_path: Path) -> None:
