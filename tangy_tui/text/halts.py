@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 SEEN_FIRST = "Press {acknowledge} first to say that you have seen this."
 SEEN = "You have seen it. Press {expert} to see whom to call, or {accept} when all is well."
 SEEN_REHEARSED = (
-    "You have seen it. Press {expert}: the simulated expert puts it right. Then press {accept}."
+    "You have seen it. Press {accept} when all is well, or {expert}: the simulated expert puts it "
+    "right."
 )
 REHEARSED = "This is a rehearsal: {expert} lets the simulated expert put it right."
 WHEN_WELL = "Press {accept} when all is well."

@@ -154,7 +154,7 @@ def test_a_robot_process_frozen_for_four_seconds_opens_one_dialog(folder: Path) 
         assert "Also wrong" not in terminal.text
         terminal.settle()
         terminal.type("a")
-        terminal.until("or r when all is well")
+        terminal.until("Press r when all is well")
         terminal.type("r")
         terminal.until(lambda text: re.search(r"\b5 \w.* -> ", text) is not None)  # it has gone on
         workspace = Workspace(folder, write=False)
