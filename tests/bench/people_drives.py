@@ -3,8 +3,8 @@
 Run by hand: `python -m tests.bench.people_drives [SCENE ...] --drives 60`. The geometry is that of
 `people_simulation`. A touch counts by how it began: the robot drove, with the person ahead
 (ahead) or not (behind); or a person walked into a robot that stood. No real person or base
-took part. The smallest gap is given twice: whoever came nearer, and (driven) as the robot left it
-when it drove nearer to a person who stood.
+took part. A row has two smallest gaps: at any time, and (driven) while the robot drove towards a
+person who stood.
 """
 
 from __future__ import annotations

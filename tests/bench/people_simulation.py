@@ -127,9 +127,9 @@ class Drive:
     told: str = ""
     touches: list[Touch] = field(default_factory=list)
     nearest: float = inf
-    """The smallest gap to a torso, whoever came nearer, in m."""
+    """The smallest gap to a torso at any time, in m."""
     driven_to: float = inf
-    """The smallest gap that the robot's own motion left to a person who stood, in m."""
+    """The smallest gap to a torso while the robot drove towards a person who stood, in m."""
     near: list[float] = field(default_factory=list)
     """Its speed while a person was within a metre ahead, in m/s."""
     silent: float = 0.0
