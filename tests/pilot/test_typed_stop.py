@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from textual import events
+from textual.widgets import Input
 
+from tangy_tui.ui.early_keys import EarlyKeys
+from tangy_tui.ui.key_reading import KeyReader
 from tangy_tui.ui.typed_stop import REST_SECONDS, TOGETHER_SECONDS, TypedStop
 
 
@@ -30,3 +34,60 @@ def test_slow_or_interrupted_letters_are_keys() -> None:
     typed = TypedStop()
     for letter in ("s", "t", None, "o", "p"):
         assert typed.take(letter, 0.0) == "key"
+
+
+class Typist:
+    """Types keys, each in a line or outside of it, as an app reads them before its widgets."""
+
+    def __init__(self) -> None:
+        self.focused: Input | None = None
+        self.screen_stack: list[object] = []
+        self.now = 0.0
+        self.stops = 0
+        self.clock = lambda: self.now
+        self._reader = KeyReader(self, EarlyKeys(self))  # type: ignore[arg-type]
+
+    def action_stop(self) -> None:
+        self.stops += 1
+
+    def types(self, text: str, *, line: bool, apart: float = 0.1) -> str:
+        """Type a text; return the part of it that goes to the widgets."""
+        self.focused = Input() if line else None
+        left = ""
+        for letter in text:
+            self.now += apart
+            if not self._reader.takes(events.Key("enter" if letter == "\n" else letter, letter)):
+                left += letter
+        return left
+
+
+@pytest.mark.parametrize("keys", ["s", "st", "sto", "xs", "S"])
+def test_the_word_goes_on_in_a_line_that_one_of_its_letters_opened(keys: str) -> None:
+    typist = Typist()
+    typist.types(keys, line=False)
+    rest = "stop"[len(keys.lstrip("x")) :]
+    assert typist.types(rest, line=True) == rest[:-1] and typist.stops == 1
+    assert typist.types(" the robot\n", line=True) == ""  # it is no answer to a question
+    typist.now += REST_SECONDS
+    assert typist.types("greet Rosa", line=True) == "greet Rosa"
+    assert typist.stops == 1
+
+
+@pytest.mark.parametrize(
+    ("keys", "text"),
+    [
+        ("", "stop it"), ("", "unstoppable"), ("s:", "top"), ("o", "stop"), ("s", "atop"),
+        ("so", "top"), ("s", "the top"), ("st", "sop"), ("stx", "op"),
+    ],
+)  # fmt: skip
+def test_a_text_that_is_typed_into_a_line_is_not_the_word(keys: str, text: str) -> None:
+    typist = Typist()
+    assert typist.types(keys, line=False) == keys
+    assert typist.types(text, line=True) == text and not typist.stops
+
+
+def test_a_pause_after_a_letter_of_the_word_ends_it() -> None:
+    typist = Typist()
+    typist.types("s", line=False)
+    typist.now += TOGETHER_SECONDS
+    assert typist.types("top", line=True) == "top" and not typist.stops
