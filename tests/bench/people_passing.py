@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from collections.abc import Callable
 from math import cos, pi, sin
 
 import numpy as np
@@ -18,10 +19,10 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.poses import IDENTITY
 from tangy_hw.navigation.surroundings import Surroundings
-from tests.bench.people_simulation import MAP, TICK, Drive, Person, Touch, followed
+from tests.bench.people_simulation import MAP, TICK, Drive, Person, followed
 from tests.hw.raycast import driven
 
-START, TICKS = Pose(5.0, 2.5, 0.0), 36
+START, SECONDS = Pose(5.0, 2.5, 0.0), 3.6
 FREE, MEETS = 0.4, 0.47  # m: between the robot and people at first; between the middles at the end
 
 
@@ -61,11 +62,14 @@ def _walker(x: float, y: float, heading: float, speed: float) -> Person:
     return Person(x, y, heading, lambda one, _: one.walk(heading, speed))
 
 
-def first_touch(drive: Drive, curvature: float) -> Touch | None:
-    """Drive as fast as the limits allow; return the first touch."""
+def carry_out(drive: Drive, curvature: float = 0.0, seconds: float = SECONDS) -> None:
+    """Drive for some s, as fast as the limits allow; `drive.touches` tells who was touched.
+
+    `curvature` is that of the robot's way in 1/m, to the left.
+    """
     limits = MotionLimits()
     around, told, late = Surroundings(MAP, IDENTITY, limits), STILL, STILL
-    for _ in range(TICKS):
+    for _ in range(round(seconds / TICK)):
         here = Estimate(drive.pose, 1e-4 * np.eye(3), 0.02, 1.0, 300)
         around.see(here, drive.pose, drive.look(), TICK)
         reached = limits.reached(told, drive.twist).forward
@@ -73,27 +77,32 @@ def first_touch(drive: Drive, curvature: float) -> Touch | None:
         told = around.limited(Twist(forward, curvature * forward))
         drive.twist, late = followed(drive.twist, late), told
         drive.move()
-        if drive.touches:
-            return drive.touches[0]
-    return None
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+def run_meetings(meet: Callable[[int, int], tuple[Drive, float] | None], about: str | None) -> None:
+    """Carry out the meetings of the command line, and print whom the robot touched.
+
+    Args:
+        meet: returns the drive and its curvature in 1/m for a number and a seed, None for none.
+        about: the help of the command line.
+    """
+    parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--meetings", type=int, default=400)
     options = parser.parse_args()
-    kinds: Counter[str] = Counter()
+    firsts: Counter[str] = Counter()
     for number in range(options.first, options.first + options.meetings):
-        met = meeting(number, options.seed)
-        touch = first_touch(*met) if met is not None else None
-        if met is not None:
-            kinds[touch.kind if touch else "none"] += 1
-        if touch is not None and touch.kind == "ahead":
-            print(f"meeting {number}: touched ahead at {touch.speed:.2f} m/s", flush=True)
-    print(f"{kinds.total()} meetings: {dict(kinds)}")
+        if (met := meet(number, options.seed)) is None:
+            continue
+        drive, curvature = met
+        carry_out(drive, curvature)
+        firsts[drive.touches[0].kind if drive.touches else "none"] += 1
+        for touch in drive.touches:
+            if touch.kind == "ahead":
+                print(f"meeting {number}: touched ahead at {touch.speed:.2f} m/s", flush=True)
+    print(f"{firsts.total()} meetings, by the first touch: {dict(firsts)}")
 
 
 if __name__ == "__main__":
-    main()
+    run_meetings(meeting, __doc__)

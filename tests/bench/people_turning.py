@@ -7,8 +7,6 @@ person or base took part.
 
 from __future__ import annotations
 
-import argparse
-from collections import Counter
 from collections.abc import Callable
 from math import atan2, cos, pi, sin
 
@@ -16,7 +14,7 @@ import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.navigation.poses import wrap
-from tests.bench.people_passing import START, first_touch
+from tests.bench.people_passing import START, run_meetings
 from tests.bench.people_simulation import Drive, Person
 
 AHEAD, PACES, TURNS = (0.9, 1.6), (0.7, 1.4), (70.0, 110.0)  # m; m/s; degrees off the heading
@@ -52,20 +50,5 @@ def _crosses(rng: Generator, heading: float) -> Callable[[Person, Drive], None]:
     return step
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--meetings", type=int, default=400)
-    options = parser.parse_args()
-    kinds: Counter[str] = Counter()
-    for number in range(options.first, options.first + options.meetings):
-        touch = first_touch(*meeting(number, options.seed))
-        kinds[touch.kind if touch else "none"] += 1
-        if touch is not None and touch.kind == "ahead":
-            print(f"meeting {number}: touched ahead at {touch.speed:.2f} m/s", flush=True)
-    print(f"{kinds.total()} meetings: {dict(kinds)}")
-
-
 if __name__ == "__main__":
-    main()
+    run_meetings(meeting, __doc__)
