@@ -53,6 +53,19 @@ def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
         given: words that are there already, so others that are as near are rather meant.
     """
     known = sorted(words)
+    if meant := did_you_mean(word, known, given):
+        return meant
+    if not known:
+        return "there is none to choose from."
+    return "choose one of: " + ", ".join(known) + "."
+
+
+def did_you_mean(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
+    """Return the tail of an error sentence: the words probably meant; "" if none is near.
+
+    The arguments are those of `nearest`.
+    """
+    known = sorted(words)
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
     if close:  # prefer words not given yet, then transposed letters, which difflib rates low
         ratios = [difflib.SequenceMatcher(None, one, word).ratio() for one in close]
@@ -62,9 +75,7 @@ def nearest(word: str, words: Iterable[str], given: Container[str] = ()) -> str:
         ranks = [(one not in given, sorted(one) == letters) for one in equal]
         meant = [one for one, rank in zip(equal, ranks, strict=True) if rank == max(ranks)]
         return f"did you mean {' or '.join(map(repr, sorted(meant)))}?"
-    if not known:
-        return "there is none to choose from."
-    return "choose one of: " + ", ".join(known) + "."
+    return ""
 
 
 def _short(text: str, most: int = 60) -> str:

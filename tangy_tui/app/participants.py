@@ -10,7 +10,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.defaults import REGISTERED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded, load_people, unaccented
-from tangy_profiles.reading import nearest, plain
+from tangy_profiles.reading import did_you_mean, plain
 from tangy_profiles.room import Room, room_for
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
@@ -103,8 +103,8 @@ class Participants:
         if found:
             raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
         typed, names = wanted.title(), {p.name for p in self.people}
-        meant = nearest(typed, names | {name.split()[0] for name in names})  # never guess a person
-        near = f": {meant}" if meant.startswith("did") else "."  # there may be many people
+        meant = did_you_mean(typed, names | {name.split()[0] for name in names})
+        near = f": {meant}" if meant else "."  # never guess a person
         raise TangyError(plain(f"There is nobody called {wanted!r}{near}"))
 
     def rename(self, person: Person, name: str) -> None:

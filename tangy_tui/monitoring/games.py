@@ -20,7 +20,7 @@ from tangy_profiles.game_records import (
     RecoveryEvent,
 )
 from tangy_profiles.game_world import SIMULATED, GameWorld
-from tangy_profiles.reading import nearest, plain
+from tangy_profiles.reading import did_you_mean, plain
 from tangy_profiles.store import Event, Store
 from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.interaction.game_worlds import GameWorlds
@@ -244,9 +244,8 @@ def find_game(games: Sequence[Game], wanted: str) -> Game:
 
 
 def _which(games: Sequence[Game], word: str) -> str:
-    close = nearest(word, [LAST, ALL, *(game.id for game in games)])
-    if close.startswith("did you mean"):
-        return close
+    if meant := did_you_mean(word, [LAST, ALL, *(game.id for game in games)]):
+        return meant
     numbers = "there is only game 1" if len(games) == 1 else f"there are 1 to {len(games)}"
     day = games[-1].at.astimezone().date()
     return f"{numbers}; or say {LAST}, {ALL}, a day such as {day}, or the beginning of an id."

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.errors import ProfileError, TangyError
-from tangy_profiles.reading import Table, nearest, plain, read_toml
+from tangy_profiles.reading import Table, did_you_mean, nearest, plain, read_toml
 
 values: st.SearchStrategy[Any] = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
@@ -124,6 +124,11 @@ def test_the_nearest_word_or_all_words_are_suggested() -> None:
     assert nearest("tiems", ["items", "teams", "title"]) == "did you mean 'items'?"
     assert nearest("signing", ["sees", "singing", "sings"]) == "did you mean 'singing'?"
     assert nearest("zzz", []) == "there is none to choose from."
+
+
+def test_a_word_that_is_like_no_other_has_no_suggestion() -> None:
+    assert did_you_mean("jok", ["joke", "greeting"]) == "did you mean 'joke'?"
+    assert not did_you_mean("zzz", ["joke", "greeting"])
 
 
 def test_equally_near_words_are_suggested_unless_already_used() -> None:

@@ -19,7 +19,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import nearest, plain
+from tangy_profiles.reading import did_you_mean, plain
 from tangy_profiles.voice import VoicePreference
 
 PROGRAM = "espeak-ng"
@@ -344,8 +344,8 @@ def _read_voices(listed: bytes) -> dict[str, str]:
 
 
 def _like(word: str, words: Mapping[str, str] | frozenset[str]) -> str:
-    said = nearest(word, words)
-    return f"{said} " if said.startswith("did you mean") else ""
+    meant = did_you_mean(word, words)
+    return f"{meant} " if meant else ""
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
