@@ -19,6 +19,11 @@ class Several:
     commands: tuple[GameCommand, ...]
 
 
+def commands_in(typed: GameCommand | Several) -> tuple[GameCommand, ...]:
+    """Return the commands of a line, in their order."""
+    return typed.commands if isinstance(typed, Several) else (typed,)
+
+
 Typed: TypeAlias = GameCommand | Several | AsksAbout | Perform
 
 

@@ -39,7 +39,7 @@ from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.staff_notes import REFUSALS, Proposal, StaffNote
-from tangy_tui.app.typed_line import Several, Typed, read_typed
+from tangy_tui.app.typed_line import Typed, commands_in, read_typed
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.steering import steering_of
@@ -266,7 +266,7 @@ class PlayStaff(PlayPanels):
         elif isinstance(command, AsksAbout):
             self.answer_about(command)
         elif command is not None:
-            for one in command.commands if isinstance(command, Several) else (command,):
+            for one in commands_in(command):
                 self._do_typed(one)
 
     def action_presence(self) -> None:

@@ -22,7 +22,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import AsksAbout
 from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.staff_notes import StaffNote
-from tangy_tui.app.typed_line import Several, read_typed
+from tangy_tui.app.typed_line import commands_in, read_typed
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook
@@ -285,7 +285,7 @@ class AskingPanel(Vertical):
                 self._tell(self._answers.say(Say(typed)))
         else:
             self.query_one(CommandBar).ready()
-            for one in command.commands if isinstance(command, Several) else (command,):
+            for one in commands_in(command):
                 self._carry_out(one)
 
     def _show(self, word: Perform | AsksAbout) -> None:
