@@ -33,7 +33,7 @@ from tangy_tui.text.results import RESULT_WORDS
 from tangy_tui.text.sessions import note_words, status_words
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
-from tangy_tui.text.worlds import WORLD_WORDS
+from tangy_tui.text.worlds import WORLDS_IN_REPORTS
 
 MOST_DRAWN = 24
 """The most games drawn on one page: the last ones."""
@@ -132,7 +132,7 @@ def _head(session: Session, *, full: bool) -> Iterator[str]:
     policies = dict.fromkeys(game.policy for game in games)
     facts = [
         (say.FROM_TO, f"{day_and_time(games[0].at)}{_until(session)}"),
-        (say.WHERE, ", ".join(dict.fromkeys(WORLD_WORDS[game.world] for game in games))),
+        (say.WHERE, ", ".join(dict.fromkeys(WORLDS_IN_REPORTS[game.world] for game in games))),
         (say.WHO, took_part(session) or say.NOBODY_NAMED),
         *([("Policy", ", ".join(policies))] if full else []),
         (say.HOW_LONG, say.how_long(session)),

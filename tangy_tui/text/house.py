@@ -26,7 +26,7 @@ from tangy_tui.text.report import (
 from tangy_tui.text.results import ways_of
 from tangy_tui.text.taking_part import stay_words
 from tangy_tui.text.times import length, on_day
-from tangy_tui.text.worlds import WORLD_WORDS
+from tangy_tui.text.worlds import WORLDS_IN_REPORTS
 
 NOTHING = "\N{EN DASH}"
 MONTHS = "Month by month"
@@ -65,7 +65,7 @@ def house_title(logs: Sequence[RobotLog]) -> str:
 
 def scope(world: GameWorld, games: int) -> str:
     """Tell which games a report covers."""
-    return f"{counted(games, 'game')}, {WORLD_WORDS[world]}"
+    return f"{counted(games, 'game')}, {WORLDS_IN_REPORTS[world]}"
 
 
 def others_words(worlds: Sequence[GameWorld]) -> str:

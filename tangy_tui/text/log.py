@@ -41,7 +41,7 @@ from tangy_tui.text.staff_report import staff_action_lines
 from tangy_tui.text.steps import step_sentence, unfinished_words
 from tangy_tui.text.taking_part import played_for_rows, took_part, with_stay
 from tangy_tui.text.times import clock, day_and_time, time_of_day
-from tangy_tui.text.worlds import WORLD_WORDS
+from tangy_tui.text.worlds import WORLDS_IN_REPORTS
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -64,7 +64,7 @@ def game_words(game: Game, activity: Activity | None = None) -> str:
 def staff_game_words(game: Game, activity: Activity | None) -> str:
     """Name a game for staff: number, activity, time, and where it was played."""
     played = game.activity if activity is None else activity.title
-    return f"Game {game.number}: {played}, {day_and_time(game.at)}, {WORLD_WORDS[game.world]}"
+    return f"Game {game.number}: {played}, {day_and_time(game.at)}, {WORLDS_IN_REPORTS[game.world]}"
 
 
 def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> Iterator[str]:

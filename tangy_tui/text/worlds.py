@@ -12,7 +12,7 @@ WORLDS: dict[GameWorld, str] = {
 }
 """The worlds of games, on screens and pages."""
 
-WORLD_WORDS: dict[GameWorld, str] = {
+WORLDS_IN_REPORTS: dict[GameWorld, str] = {
     UNKNOWN: "from an unknown world",
     SIMULATED: "simulated",
     BENCH: "on the bench, with simulated devices",
