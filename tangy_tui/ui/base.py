@@ -101,9 +101,10 @@ class TangyScreen(Screen[ResultT]):
     HELP: ClassVar[str] = ""
     ALLOW_IN_MAXIMIZED_VIEW = ".-textual-system,StatusLine,#keys,#command"
     LETTERS_FOLLOW: ClassVar[Mapping[str, str]] = {}
-    """The actions of keys (by the key's id) that open something to type in, or to filter.
+    """The screen's action for each action of the keymap that opens a line or a list.
 
-    They are carried out before the next key is read, so that it goes there.
+    `KeyReader` carries it out before it reads the next key. If it opens a dialog, `EarlyKeys` keeps
+    the keys until the dialog has the focus.
     """
 
     def ask(self, dialog: Dialog[AnswerT]) -> asyncio.Future[AnswerT]:

@@ -50,7 +50,7 @@ PANELS = ("room", "transcript", "policy", "posteriors", "log", "faults")
 """The panels of the number keys, from 1."""
 
 LETTERS_FOLLOW = {"inject": "inject", "claim": "claim", "presence": "presence", "command": "type"}
-"""The actions of keys that open something to type in, or to filter."""
+"""See `TangyScreen.LETTERS_FOLLOW`."""
 
 BINDINGS: list[BindingType] = [
     *bind("pause"),
