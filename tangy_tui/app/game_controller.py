@@ -92,8 +92,9 @@ class GameController(HandingOver):
         self.autonomy = AutonomyDial()
         self.stopped = self.taking_over = False
         self.stepping = False
-        self.obeys: tuple[Behaviour, str | None] | None = None  # what staff said, and to whom
         """Whether a step is being carried out now."""
+        self.obeys: tuple[Behaviour, str | None] | None = None
+        """The behaviour and its target, if Tangy is doing now what staff told it to do."""
         self.nudge = threading.Event()
         """Set when something changed, for the thread that waits to call `next`."""
         self.changed: Callable[[], object] = lambda: None
@@ -291,7 +292,7 @@ class GameController(HandingOver):
             return [StaffNote("joining" if self.joined else "no game")]
         if self._stands_at_end and not isinstance(command, StopRobot | EndGame):
             return [StaffNote("ends")]
-        if isinstance(command, ClaimCard) and self.plan.judged(command) is not None:
+        if isinstance(command, ClaimCard) and self.plan.refuses(command) is None:
             self.robot.keep_claimed(command)
         if isinstance(command, PlanCommand):
             return self.plan.do(command)

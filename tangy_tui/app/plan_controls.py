@@ -255,10 +255,9 @@ class GamePlanControls:
         cards = ", ".join(map(str, sorted(here)))
         if world.numbers_on(card) is None:
             return StaffNote("no such card", str(card), cards)
-        everybody = set(world.people) - world.away <= set(known)
         if person or world.holder(card):
             return None
-        if everybody:
+        if set(world.people) - world.away <= set(known):  # every card here is known
             return StaffNote("whose card", str(card), cards)
         # The group is told of no win that Tangy cannot celebrate.
         return StaffNote("whose card", str(card)) if world.wins(card) else None
@@ -318,16 +317,14 @@ class GamePlanControls:
         if self._idle:
             world.choose(replace(world.game_plan, patterns=patterns))
         else:
-            now = world.patterns
-            follow = tuple(
-                one for one in patterns if rules.pattern(one).on(now.deck) != now.played
-            )  # what is played already stays the first
+            now = world.patterns  # the game goes on for the present pattern first
+            begun = [one for one in patterns if rules.pattern(one).on(now.deck) == now.played]
+            follow = tuple(one for one in patterns if one not in begun)
             labels = [rules.pattern(one).label for one in follow]
-            begun = [one for one in patterns if one not in follow][:1]
             present = rules.pattern(begun[0]) if begun else now.present
             if present is not None:
                 labels.insert(0, present.label)
-                already = "" if begun[:1] == [patterns[0]] else present.label
+                already = "" if patterns[0] in begun else present.label
             self._supervision.game.change("patterns chosen", patterns=follow, by=self._by)
         self._note("patterns", detail=", ".join(patterns))
         return [StaffNote("patterns", ", then ".join(labels), already)]

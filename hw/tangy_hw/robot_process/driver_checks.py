@@ -50,7 +50,7 @@ GAP_SECONDS = 1.0  # of silence, after which a base may have been switched on ag
 
 
 def hangs(seconds: float, did: str = "started") -> str:
-    """Return what is told about a driver that takes longer than some s to start."""
+    """Return what is told about a driver that has not `did` something within some s."""
     return f"its driver has not {did} within {seconds:g} s."
 
 

@@ -104,9 +104,8 @@ def _once(
     except WorkerError as error:
         return None, "", f"no process can be started ({error})."
     worker.tell(asked)
-    device, step, wait = "", STARTS, 0.0
+    device, step, wait = "", STARTS, LOAD_SECONDS
     try:
-        wait = LOAD_SECONDS
         while True:
             match heard.get(timeout=wait):
                 case {"calls": str(device), "step": str(step)}:

@@ -41,7 +41,7 @@ def table_rows(content: bytes, file: str) -> tuple[list[list[str]], ReadAs]:
     separator = max(SEPARATORS, key=header.count)
     reader = csv.reader(lines[skipped:], delimiter=separator, strict=True)
     try:
-        rows = [[" ".join(cell.split("\n")).strip() for cell in row] for row in reader if row]
+        rows = [[cell.replace("\n", " ").strip() for cell in row] for row in reader if row]
     except csv.Error:
         raise ValueError(
             f"line {skipped + reader.line_num}: its quotation marks do not match. Put quotation"
