@@ -23,6 +23,7 @@ from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT, ActivityState, Outcome, UserState
 from tangy_profiles.store import Event, Store
 from tangy_profiles.tracker import Tracker
+from tangy_profiles.unfinished import late_requests, unmade_moves
 
 
 class OpenRequests:
@@ -339,53 +340,13 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         began,
         changes,
         acted=acted,
-        asked_for=_asked_for(acts, last),
+        asked_for=late_requests(acts, last),
         cards=KnownCards.of(notes),
-        unmade=_unmade(newest.record, notes, changes, len(own)),
+        unmade=unmade_moves(newest.record, notes, changes, len(own)),
         came=tuple(
             (note.person, note.seat - 1) for note in notes if note.did == "came" and note.seat
         ),
     )
-
-
-def _unmade(
-    game: GameBeginning, notes: Sequence[StaffAction], changes: Sequence[GameChange], steps: int
-) -> tuple[GameChange, ...]:
-    """Return who left or came by the word of staff, but not by the changes of the game."""
-    away, told = {*game.absent}, dict[str, StaffAction]()
-    for change in changes:
-        if change.game == game.game and change.what in ("left", "came", "joined"):
-            (away.add if change.what == "left" else away.discard)(change.person)
-    for note in notes:
-        if note.did in ("left", "came") and not note.seat:  # somebody new joins otherwise
-            told[note.person] = note
-    return tuple(
-        GameChange(
-            game=game.game,
-            steps=steps,
-            what="left" if note.did == "left" else "came",
-            person=person,
-            by=note.by,
-        )
-        for person, note in told.items()
-        if (note.did == "left") is not (person in away)
-    )
-
-
-def _asked_for(
-    acts: Sequence[Event[StaffAction]], steps: Sequence[Event[GameStep]]
-) -> tuple[str, ...]:
-    """Return for whom staff have asked since, whom no step shows asking, and nobody visited."""
-    asked: dict[str, None] = {}
-    for event in sorted((*acts, *steps), key=lambda event: event.seq):
-        match event.record:
-            case StaffAction(did="asked for", person=person):
-                asked[person] = None
-            case GameStep() as step:
-                shown = () if step.after is None else step.after.users
-                for one in (step.target, *(user.id for user in shown if user.request == "AR")):
-                    asked.pop(one or "", None)
-    return tuple(asked)
 
 
 def _run(games: list[Event[GameBeginning]]) -> list[Event[GameBeginning]]:

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.help_requests import SignState
     from tangy_profiles.planned_game import PlannedGame
     from tangy_profiles.state import ActivityState
+    from tangy_tui.app.claim_controls import ClaimNow
     from tangy_tui.app.game_controller import GameController
-    from tangy_tui.app.plan_controls import ClaimNow
     from tangy_tui.app.staff_view import PersonNow
     from tangy_tui.learning.policy import Decision
 

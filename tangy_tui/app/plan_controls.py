@@ -1,15 +1,16 @@
-"""What staff change in a game themselves: pace, calls, claims, patterns, who is present."""
+"""What staff change in a game themselves: pace, calls, patterns, who is present."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, assert_never
+from dataclasses import replace
+from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.game_records import ChangeKind
 from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, next_pace
 from tangy_profiles.planned_game import PlannedGame
 from tangy_profiles.scene import Scene
+from tangy_tui.app.claim_controls import ClaimControls
 from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
     AskFor,
@@ -30,46 +31,14 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 
-ClaimKind = Literal["claim right", "claim late", "claim wrong"]
-CLAIM_SECONDS, LONGEST_CLAIM = 15.0, 60.0
-"""A claim that was told is shown so long at least (s), until the next call, and so long at most."""
-
-
-@dataclass(frozen=True, slots=True)
-class ClaimNow:
-    """A claim of staff in the running game, and its result as far as it is known."""
-
-    card: int
-    person: str
-    """Who has the card; "" if nobody knows."""
-    kind: ClaimKind | None
-    """None: the number that is just being called may decide it."""
-    told: float | None = None
-    """When Tangy began to tell the group (s of the world); None: it finishes its step first."""
-    calls: int = 0
-    """How many numbers were called by then."""
-    game: str = ""
-    """The id of the game."""
-    goes: bool = False
-    """Whether Tangy goes to the person because of it; not yet while it finishes its step."""
-
-
-class GamePlanControls:
+class GamePlanControls(ClaimControls):
     """Changes the plan of supervised games; refuses each change if the game has no plan."""
 
     def __init__(self, supervision: Supervision, note: Callable[..., None], by: str) -> None:
         """Control the games of a supervision; `note` logs what staff (`by`) did."""
-        self._supervision = supervision
-        self._note = note
-        self._by = by
+        super().__init__(supervision, note, by)
         self._said: list[ComesIn | GoesAway] = []
         """Who staff said has come or left, until it takes effect after the present step."""
-        self._claimed: ClaimNow | None = None
-
-    @property
-    def world(self) -> PlannedGame | None:
-        """The world, if staff can plan its games."""
-        return self._supervision.game.changes.world
 
     def do(self, command: PlanCommand) -> list[Result]:
         """Carry out a command.
@@ -98,10 +67,6 @@ class GamePlanControls:
             case forgotten:
                 assert_never(forgotten)
 
-    @property
-    def _idle(self) -> bool:
-        return self._supervision.over
-
     def _pace(self, world: PlannedGame, seconds: float) -> StaffNote:
         pace = min(LONGEST_PACE, max(SHORTEST_PACE, seconds))
         if self._idle:
@@ -117,19 +82,13 @@ class GamePlanControls:
         number = None if world is None or self._idle else _number_called(world, label)
         return "" if world is None or number is None else world.activity.deck.label(number)
 
-    @property
-    def calling(self) -> str:
-        """The label of the number that Tangy is saying now, "" if it says none."""
-        world = self.world
-        return "" if world is None else "".join(map(world.activity.deck.label, world.calling))
-
     def say_early(self, command: GameCommand) -> None:
         """Log who comes or leaves at once, unless that is refused; the game changes later.
 
         A claim is judged at once; the group is told later.
         """
-        if isinstance(command, ClaimCard) and (judged := self.judged(command)) is not None:
-            self._claimed = judged
+        if isinstance(command, ClaimCard):
+            self._claim_early(command)
         if self._idle or not isinstance(command, ComesIn | GoesAway):
             return
         if self._refuses_move(command, self.away) is None:
@@ -138,50 +97,10 @@ class GamePlanControls:
 
     def forget_early(self, command: GameCommand) -> None:
         """Forget what was logged early, once its command was carried out or failed."""
-        claimed = self._claimed
-        if isinstance(command, ClaimCard) and claimed is not None and claimed.told is None:
-            claim = self.with_card(command)
-            if claim.card == claimed.card and claim.person in ("", claimed.person):
-                self._claimed = None
+        if isinstance(command, ClaimCard):
+            self._forget_claim(command)
         if isinstance(command, ComesIn | GoesAway) and command in self._said:
             self._said.remove(command)
-
-    def judged(self, claim: ClaimCard) -> ClaimNow | None:
-        """Return the result of a claim by the numbers called so far; None if it is refused."""
-        world, claim = self.world, self.with_card(claim)
-        if world is None or self._idle or self._no_card(claim) is not None:
-            return None
-        holder, numbers = claim.person or world.holder(claim.card), world.numbers_on(claim.card)
-        kind: ClaimKind | None = self._verdict(world, claim.card, holder)
-        if kind == "claim wrong" and numbers is not None and {*world.calling} & {*numbers}:
-            kind = None
-        return ClaimNow(claim.card, holder, kind)
-
-    @property
-    def claim(self) -> ClaimNow | None:
-        """The last claim, while it is news; or None.
-
-        It is news until the next call, and for a while; a winning one at most until the visit.
-        """
-        claimed, world = self._claimed, self.world
-        if claimed is None or world is None or self._idle:
-            return None
-        if claimed.told is None:
-            return claimed
-        ago, calls = world.seconds - claimed.told, len(world.called_now)
-        over = ago >= LONGEST_CLAIM or (ago >= CLAIM_SECONDS and calls > claimed.calls)
-        before = claimed.game != self._supervision.game.game
-        there = world.tracker.place == claimed.person and world.arrived
-        visited = claimed.goes and (there or claimed.person not in world.vouched)
-        return None if over or before or visited else claimed
-
-    @staticmethod
-    def _verdict(world: PlannedGame, card: int, holder: str) -> ClaimKind:
-        wins = world.wins(card)
-        late = bool(wins and world.activity.rules.claim_late and holder)
-        if late and world.is_won_before(holder):
-            return "claim late"
-        return "claim right" if wins else "claim wrong"
 
     @property
     def away(self) -> frozenset[str]:
@@ -223,45 +142,6 @@ class GamePlanControls:
         plays = gathering is not None and person in gathering.people
         return None if plays else StaffNote("not playing", person)
 
-    def with_card(self, claim: ClaimCard) -> ClaimCard:
-        """Return a claim with the number of the person's card, if it is known and was not given."""
-        if claim.card or self.world is None:
-            return claim
-        return replace(claim, card=self.world.known_cards.get(claim.person, 0))
-
-    def may_hold(self, claim: ClaimCard) -> tuple[str, ...]:
-        """Return the people who may have the card of a claim, if nobody knows whose it is.
-
-        These are the people here whose cards are not known, or everybody here if all are.
-        """
-        world = self.world
-        unclear = world is not None and not self._idle and claim.card and not claim.person
-        if world is None or not unclear or world.holder(claim.card):
-            return ()
-        if world.numbers_on(claim.card) is None:
-            return ()
-        here = tuple(one for one in world.people if one not in world.away)
-        return tuple(one for one in here if one not in world.known_cards) or here
-
-    def _no_card(self, claim: ClaimCard) -> StaffNote | None:
-        """Return why a claim cannot be checked: there is no such card, or nobody here has it."""
-        card, person = claim.card, claim.person
-        if (world := self.world) is None:
-            return StaffNote("no cards")
-        if person and not card:
-            return StaffNote("which card", person)
-        known = world.known_cards
-        here = {card for person, card in known.items() if person not in world.away}
-        cards = ", ".join(map(str, sorted(here)))
-        if world.numbers_on(card) is None:
-            return StaffNote("no such card", str(card), cards)
-        if person or world.holder(card):
-            return None
-        if set(world.people) - world.away <= set(known):  # every card here is known
-            return StaffNote("whose card", str(card), cards)
-        # The group is told of no win that Tangy cannot celebrate.
-        return StaffNote("whose card", str(card)) if world.wins(card) else None
-
     def _nothing_called(self, label: str) -> StaffNote | None:
         """Return why there is no call to take back, None if there is one.
 
@@ -281,34 +161,6 @@ class GamePlanControls:
         changed = self._supervision.game.change("taken back", number=number, by=self._by)
         self._note("took back", detail=deck.label(number), taken_back=number)
         return [StaffNote("call taken back", deck.label(number)), changed]
-
-    def _claim(self, world: PlannedGame, claim: ClaimCard) -> list[Result]:
-        """Check a card against all calls, and tell the group the result."""
-        claim = self.with_card(claim)
-        if (refused := self._no_card(claim)) is not None:
-            return [refused]
-        card, person = claim.card, claim.person
-        rules, present = world.activity.rules, world.patterns.present
-        pattern = present or next(iter(rules.patterns), None)
-        holder = person or world.holder(card)
-        kind = self._verdict(world, card, holder)
-        words = {"claim right": rules.claim_right, "claim late": rules.claim_late}.get(
-            kind, rules.claim_wrong
-        )
-        self._note(kind, person=holder or "", detail=str(card))
-        self._claimed = claimed = ClaimNow(
-            card, holder, kind, world.seconds, len(world.called_now), self._supervision.game.game
-        )
-        said = words.format(card=card, pattern=pattern.label if pattern else "")
-        world.announce(said)
-        people = (holder,) if holder else ()
-        told: list[Result] = [StaffNote(kind, str(card), said, people)]
-        if kind != "claim right":
-            return told
-        told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
-        if self._claimed is claimed:  # staff may have typed another one meanwhile
-            self._claimed = replace(claimed, goes=True)
-        return told
 
     def _choose(self, world: PlannedGame, names: tuple[str, ...]) -> list[Result]:
         rules = world.activity.rules

@@ -12,8 +12,8 @@ from tangy_tui.text.decisions import shown_here
 from tangy_tui.text.player_reports import player_report_words
 
 if TYPE_CHECKING:
+    from tangy_tui.app.claim_controls import ClaimNow
     from tangy_tui.app.game_commands import Autonomy, GameCommand
-    from tangy_tui.app.plan_controls import ClaimNow
     from tangy_tui.app.staff_notes import NoteKind, Proposal, StaffNote
 
 HELD = {

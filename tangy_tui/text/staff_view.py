@@ -10,8 +10,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.game_rules import Patterns
 from tangy_profiles.state import ActivityState
+from tangy_tui.app.claim_controls import ClaimNow
 from tangy_tui.app.game_commands import Autonomy
-from tangy_tui.app.plan_controls import ClaimNow
 from tangy_tui.app.staff_view import PersonNow, StaffView
 from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.game_rules import GamePlan
+from tangy_tui.app.claim_controls import CLAIM_SECONDS
 from tangy_tui.app.game_commands import AskFor, ClaimCard, Pause, TakeOver
-from tangy_tui.app.plan_controls import CLAIM_SECONDS
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.staff_view import PAUSED, PAUSES_THEN, person_words

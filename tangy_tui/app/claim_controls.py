@@ -1,0 +1,181 @@
+"""Claims of staff that a card wins: each is judged at once, and told to the group in its turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+from tangy_profiles.planned_game import PlannedGame
+from tangy_tui.app.fault_commands import Result
+from tangy_tui.app.game_commands import ClaimCard
+from tangy_tui.app.staff_notes import StaffNote
+
+if TYPE_CHECKING:
+    from tangy_tui.monitoring.supervision import Supervision
+
+ClaimKind = Literal["claim right", "claim late", "claim wrong"]
+CLAIM_SECONDS, LONGEST_CLAIM = 15.0, 60.0
+"""A claim that was told is shown so long at least (s), until the next call, and so long at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimNow:
+    """A claim of staff in the running game, and its result as far as it is known."""
+
+    card: int
+    person: str
+    """Who has the card; "" if nobody knows."""
+    kind: ClaimKind | None
+    """None: the number that is just being called may decide it."""
+    told: float | None = None
+    """When Tangy began to tell the group (s of the world); None: it finishes its step first."""
+    calls: int = 0
+    """How many numbers were called by then."""
+    game: str = ""
+    """The id of the game."""
+    goes: bool = False
+    """Whether Tangy goes to the person because of it; not yet while it finishes its step."""
+
+
+class ClaimControls:
+    """The part of the plan's controls that checks claims."""
+
+    def __init__(self, supervision: Supervision, note: Callable[..., None], by: str) -> None:
+        """Check claims in the games of a supervision; `note` logs what staff (`by`) did."""
+        self._supervision = supervision
+        self._note = note
+        self._by = by
+        self._claimed: ClaimNow | None = None
+
+    @property
+    def world(self) -> PlannedGame | None:
+        """The world, if staff can plan its games."""
+        return self._supervision.game.changes.world
+
+    @property
+    def _idle(self) -> bool:
+        return self._supervision.over
+
+    @property
+    def calling(self) -> str:
+        """The label of the number that Tangy is saying now, "" if it says none."""
+        world = self.world
+        return "" if world is None else "".join(map(world.activity.deck.label, world.calling))
+
+    def _claim_early(self, claim: ClaimCard) -> None:
+        """Judge a claim at once; the group is told later."""
+        if (judged := self.judged(claim)) is not None:
+            self._claimed = judged
+
+    def _forget_claim(self, claim: ClaimCard) -> None:
+        """Forget a claim that was judged early, and refused in its turn."""
+        claimed = self._claimed
+        if claimed is not None and claimed.told is None:
+            claim = self.with_card(claim)
+            if claim.card == claimed.card and claim.person in ("", claimed.person):
+                self._claimed = None
+
+    def judged(self, claim: ClaimCard) -> ClaimNow | None:
+        """Return the result of a claim by the numbers called so far; None if it is refused."""
+        world, claim = self.world, self.with_card(claim)
+        if world is None or self._idle or self._no_card(claim) is not None:
+            return None
+        holder, numbers = claim.person or world.holder(claim.card), world.numbers_on(claim.card)
+        kind: ClaimKind | None = self._verdict(world, claim.card, holder)
+        if kind == "claim wrong" and numbers is not None and {*world.calling} & {*numbers}:
+            kind = None
+        return ClaimNow(claim.card, holder, kind)
+
+    @property
+    def claim(self) -> ClaimNow | None:
+        """The last claim, while it is news; or None.
+
+        It is news until the next call, and for a while; a winning one at most until the visit.
+        """
+        claimed, world = self._claimed, self.world
+        if claimed is None or world is None or self._idle:
+            return None
+        if claimed.told is None:
+            return claimed
+        ago, calls = world.seconds - claimed.told, len(world.called_now)
+        over = ago >= LONGEST_CLAIM or (ago >= CLAIM_SECONDS and calls > claimed.calls)
+        before = claimed.game != self._supervision.game.game
+        there = world.tracker.place == claimed.person and world.arrived
+        visited = claimed.goes and (there or claimed.person not in world.vouched)
+        return None if over or before or visited else claimed
+
+    @staticmethod
+    def _verdict(world: PlannedGame, card: int, holder: str) -> ClaimKind:
+        wins = world.wins(card)
+        late = bool(wins and world.activity.rules.claim_late and holder)
+        if late and world.is_won_before(holder):
+            return "claim late"
+        return "claim right" if wins else "claim wrong"
+
+    def with_card(self, claim: ClaimCard) -> ClaimCard:
+        """Return a claim with the number of the person's card, if it is known and was not given."""
+        if claim.card or self.world is None:
+            return claim
+        return replace(claim, card=self.world.known_cards.get(claim.person, 0))
+
+    def may_hold(self, claim: ClaimCard) -> tuple[str, ...]:
+        """Return the people who may have the card of a claim, if nobody knows whose it is.
+
+        These are the people here whose cards are not known, or everybody here if all are.
+        """
+        world = self.world
+        unclear = world is not None and not self._idle and claim.card and not claim.person
+        if world is None or not unclear or world.holder(claim.card):
+            return ()
+        if world.numbers_on(claim.card) is None:
+            return ()
+        here = tuple(one for one in world.people if one not in world.away)
+        return tuple(one for one in here if one not in world.known_cards) or here
+
+    def _no_card(self, claim: ClaimCard) -> StaffNote | None:
+        """Return why a claim cannot be checked: there is no such card, or nobody here has it."""
+        card, person = claim.card, claim.person
+        if (world := self.world) is None:
+            return StaffNote("no cards")
+        if person and not card:
+            return StaffNote("which card", person)
+        known = world.known_cards
+        here = {card for person, card in known.items() if person not in world.away}
+        cards = ", ".join(map(str, sorted(here)))
+        if world.numbers_on(card) is None:
+            return StaffNote("no such card", str(card), cards)
+        if person or world.holder(card):
+            return None
+        if set(world.people) - world.away <= set(known):  # every card here is known
+            return StaffNote("whose card", str(card), cards)
+        # The group is told of no win that Tangy cannot celebrate.
+        return StaffNote("whose card", str(card)) if world.wins(card) else None
+
+    def _claim(self, world: PlannedGame, claim: ClaimCard) -> list[Result]:
+        """Check a card against all calls, and tell the group the result."""
+        claim = self.with_card(claim)
+        if (refused := self._no_card(claim)) is not None:
+            return [refused]
+        card, person = claim.card, claim.person
+        rules, present = world.activity.rules, world.patterns.present
+        pattern = present or next(iter(rules.patterns), None)
+        holder = person or world.holder(card)
+        kind = self._verdict(world, card, holder)
+        words = {"claim right": rules.claim_right, "claim late": rules.claim_late}.get(
+            kind, rules.claim_wrong
+        )
+        self._note(kind, person=holder or "", detail=str(card))
+        self._claimed = claimed = ClaimNow(
+            card, holder, kind, world.seconds, len(world.called_now), self._supervision.game.game
+        )
+        said = words.format(card=card, pattern=pattern.label if pattern else "")
+        world.announce(said)
+        people = (holder,) if holder else ()
+        told: list[Result] = [StaffNote(kind, str(card), said, people)]
+        if kind != "claim right":
+            return told
+        told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
+        if self._claimed is claimed:  # staff may have typed another one meanwhile
+            self._claimed = replace(claimed, goes=True)
+        return told
