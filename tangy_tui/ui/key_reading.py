@@ -12,7 +12,6 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.early_keys import EarlyKeys
 from tangy_tui.ui.keys import keymap_of
 from tangy_tui.ui.pasted_text import pasted_text
-from tangy_tui.ui.type_ahead_guard import clock_of
 from tangy_tui.ui.typed_stop import Taken, TypedStop
 
 
@@ -84,8 +83,8 @@ class KeyReader:
             taken: Taken = "stop" if stops(text) else "key"
         elif isinstance(event, events.Key):
             known = event.character if event.is_printable else None
-            now = clock_of(self._app)()
-            taken = self._typed_stop.take("\n" if event.key == "enter" else known, now)
+            letter = "\n" if event.key == "enter" else known
+            taken = self._typed_stop.take(letter, event.time)  # when it was typed, not handled
         else:
             taken = "key"
         if taken == "stop":

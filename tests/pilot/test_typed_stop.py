@@ -44,7 +44,6 @@ class Typist:
         self.screen_stack: list[object] = []
         self.now = 0.0
         self.stops = 0
-        self.clock = lambda: self.now
         self._reader = KeyReader(self, EarlyKeys(self))  # type: ignore[arg-type]
 
     def action_stop(self) -> None:
@@ -56,7 +55,9 @@ class Typist:
         left = ""
         for letter in text:
             self.now += apart
-            if not self._reader.takes(events.Key("enter" if letter == "\n" else letter, letter)):
+            key = events.Key("enter" if letter == "\n" else letter, letter)
+            key.time = self.now
+            if not self._reader.takes(key):
                 left += letter
         return left
 
@@ -91,3 +92,9 @@ def test_a_pause_after_a_letter_of_the_word_ends_it() -> None:
     typist.types("s", line=False)
     typist.now += TOGETHER_SECONDS
     assert typist.types("top", line=True) == "top" and not typist.stops
+
+
+def test_letters_typed_together_are_one_word_if_a_busy_program_handles_them_late() -> None:
+    typist = Typist()
+    typist.clock = lambda: typist.now * 20  # type: ignore[attr-defined]
+    assert typist.types("stop", line=False) == "sto" and typist.stops == 1
