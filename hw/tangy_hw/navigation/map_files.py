@@ -127,18 +127,22 @@ def _picture(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
                 Image.open(given, formats=FORMATS) as file,
             ):
                 if file.width * file.height > MOST_PIXELS:
-                    raise MapFileError(
-                        f"{name}: has more than {MOST_PIXELS // 10**6} million pixels."
-                    )
+                    raise _too_large(name)
                 if file.mode not in ("L", "RGB", "1", "P", "RGBA", "LA"):
                     raise MapFileError(f"{name}: has more than 255 shades; save it with 8 bits.")
                 return np.asarray(file.convert("L"), dtype=np.float64)
-    except (UnidentifiedImageError, Image.DecompressionBombError):
+    except Image.DecompressionBombError:  # already when it is opened, if it is far larger
+        raise _too_large(name) from None
+    except UnidentifiedImageError:
         raise MapFileError(f"{name}: is not a picture of a map (PGM or PNG).") from None
     except (OSError, SyntaxError, ValueError, EOFError) as error:
         reason = getattr(error, "strerror", None)
         told = f"cannot be read ({reason})" if reason else "breaks off or is damaged"
         raise MapFileError(f"{name}: {told}.") from None
+
+
+def _too_large(name: str) -> MapFileError:
+    return MapFileError(f"{name}: has more than {MOST_PIXELS // 10**6} million pixels.")
 
 
 def _settings(path: Path) -> _Settings:
