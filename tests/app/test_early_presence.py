@@ -160,7 +160,7 @@ def test_a_sign_that_comes_down_late_is_not_shown_as_a_new_request(robot: Robot)
         shown.append(robot.world.asking)
 
     robot.link.meanwhile = meanwhile
-    assert not robot.world.requests.answered("user2")
+    assert robot.world.requests.stays_up("user2")
     assert shown and not any(shown)
     assert robot.world.asking == ("user2",)
 

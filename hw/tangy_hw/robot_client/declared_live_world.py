@@ -281,11 +281,7 @@ class DeclaredLiveWorld(LiveWorld):
         for person in asked:
             if person in self.game.queue or self.game.over:
                 continue
-            try:
-                is_down = self.requests.answered(person)
-            except DeviceError:
-                continue
-            if not is_down:  # the sign is still up: the request is not settled
+            if self.requests.stays_up(person):  # the request is not settled
                 self.tracker.ask(person)
                 self.game.closed = None
         return done

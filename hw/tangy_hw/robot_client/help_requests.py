@@ -107,12 +107,19 @@ class HelpRequestTracker:
         self.over(person)
         self._aside.add(person)
 
-    def answered(self, person: str) -> bool:
-        """Record that a request was settled; return whether the sign comes down in time.
+    def stays_up(self, person: str) -> bool:
+        """Record that a request was settled; return whether the sign is up even then.
 
-        The last sight of a sensor that has fallen silent does not count: such a sign is ignored
-        until the sensor works again.
+        It counts as down if the robot cannot look. So does the last sight of a sensor that has
+        fallen silent: such a sign is ignored until the sensor works again.
         """
+        try:
+            return self._waits_for_sign(person)
+        except DeviceError:
+            return False
+
+    def _waits_for_sign(self, person: str) -> bool:
+        """Give the person time to take the sign down; return whether it is still up."""
         self.over(person)
         began, self._settling = self._link.time, person
         try:
@@ -124,7 +131,7 @@ class HelpRequestTracker:
             self._settling = ""
         if person in self.all and not self._sees:
             self._unseen.add(person)
-        return person not in self.all
+        return person in self.all
 
     def look_twice(self, tracker: Tracker) -> None:
         """Wait until it is certain whether waiting people have taken their signs down.

@@ -343,11 +343,7 @@ class LiveWorld(LivePlan):
         closed = tracker.closed
         if closed is None or self.over:
             return
-        try:
-            is_down = self.requests.answered(closed)
-        except DeviceError:
-            return
-        if not is_down:  # the sign is still up: the request is not settled
+        if self.requests.stays_up(closed):  # the request is not settled
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
 
