@@ -14,6 +14,7 @@ from tangy_profiles.health import OK, DeviceState, Fact, Reading
 from tangy_tui.app.game_commands import Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.dialogs.staff_line import NextDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.terminal import TerminalKind
@@ -137,3 +138,9 @@ async def until_a_call_is_held(
     while not (world.calling and len(link.said) > link.most):
         link.most = len(link.said)
         await pilot.pause(0.05)
+
+
+async def ask_for_the_choice(pilot: TangyPilot) -> None:
+    """Open the line for what Tangy does next, while it finishes its step."""
+    await pilot.press("o")
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))

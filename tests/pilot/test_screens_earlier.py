@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
@@ -21,7 +23,7 @@ from tangy_tui.ui.dialogs.messages import MessagesDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.fault_list import FaultList
-from tests.pilot.conftest import Run, StillClock
+from tests.pilot.conftest import Run, StillClock, TangyPilot
 from tests.support.interrupted_games import broken_off
 from tests.support.waiting import until_shown
 
@@ -51,21 +53,25 @@ def interrupted(workspace: Workspace, learnt: Policy) -> Workspace:
     return workspace
 
 
-def resuming(workspace: Workspace, policy: Policy) -> Program:
+@asynccontextmanager
+async def resumed(run: Run, workspace: Workspace, policy: Policy) -> AsyncIterator[TangyPilot]:
+    """Resume the interrupted game on the screen."""
+
     async def start(program: Program) -> None:
         past = find_interrupted(workspace, SIMULATED)
         supervision = workspace.supervision(policy, 5)
         await program.push_screen(PlayScreen(workspace, supervision, past=past, teacher="ann"))
 
-    return Program(workspace, start, clock=StillClock())
+    async with run((120, 40), app=Program(workspace, start, clock=StillClock())) as pilot:
+        await until_shown(pilot, lambda: "earlier steps" in pilot.text())
+        yield pilot
 
 
 @pytest.mark.slow
 async def test_messages_before_a_crash_can_be_read_in_the_resumed_game(
     interrupted: Workspace, learnt: Policy, run: Run
 ) -> None:
-    async with run((120, 40), app=resuming(interrupted, learnt)) as pilot:
-        await until_shown(pilot, lambda: "earlier steps" in pilot.text())
+    async with resumed(run, interrupted, learnt) as pilot:
         await pilot.press("exclamation_mark")
         await until_shown(pilot, lambda: "Before the interruption" in pilot.text())
         text = pilot.text()
@@ -79,8 +85,7 @@ async def test_messages_before_a_crash_can_be_read_in_the_resumed_game(
 async def test_the_next_game_does_not_list_messages_before_the_interruption_of_another(
     interrupted: Workspace, learnt: Policy, run: Run
 ) -> None:
-    async with run((120, 40), app=resuming(interrupted, learnt)) as pilot:
-        await until_shown(pilot, lambda: "earlier steps" in pilot.text())
+    async with resumed(run, interrupted, learnt) as pilot:
         game = interrupted.supervision(learnt, 6)
         await pilot.app.push_screen(PlayScreen(interrupted, game, teacher="ann"))
         await until_shown(pilot, lambda: game.games == 1)
@@ -93,8 +98,7 @@ async def test_the_next_game_does_not_list_messages_before_the_interruption_of_a
 async def test_faults_before_a_crash_are_listed_in_the_resumed_game(
     interrupted: Workspace, learnt: Policy, run: Run
 ) -> None:
-    async with run((120, 40), app=resuming(interrupted, learnt)) as pilot:
-        await until_shown(pilot, lambda: "earlier steps" in pilot.text())
+    async with resumed(run, interrupted, learnt) as pilot:
         await pilot.press("6")
         faults = pilot.app.screen.query_one(FaultList)
         await until_shown(pilot, lambda: "The voice is silent" in pilot.text())

@@ -14,7 +14,7 @@ from tangy_tui.ui.dialogs.staff_line import CommandDialog, NextDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.round_trip import ReplyParser
 from tests.pilot.conftest import SMALL, screen_text
-from tests.pilot.live_games import HeldLink, live, until_a_call_is_held
+from tests.pilot.live_games import HeldLink, ask_for_the_choice, live, until_a_call_is_held
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -81,16 +81,14 @@ async def test_words_that_wait_for_tangy_are_shown_and_another_line_keeps_them(
 ) -> None:
     async with run(app=program, size=SMALL) as pilot:
         await until_a_call_is_held(pilot, link, world)
-        await pilot.press("o")
-        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
+        await ask_for_the_choice(pilot)
         await pilot.press(*"call number", "enter")
         await until_shown(pilot, lambda: you_say_words("call number") in screen_text(pilot.app))
         await pilot.press("colon")
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, CommandDialog))
         await pilot.press("escape")
         await until_shown(pilot, lambda: live(pilot).is_active)
-        await pilot.press("o")  # shows them again
-        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
+        await ask_for_the_choice(pilot)  # shows them again
         assert pilot.app.screen.query_one(Input).value == "call number"
         await pilot.press("enter")
         link.most = len(link.said)

@@ -34,7 +34,13 @@ from tangy_tui.ui.widgets.status_line import StatusLine
 from tests.app.test_interruption import Robot
 from tests.pilot.conftest import SMALL, StillClock, screen_text
 from tests.pilot.faults import game_of, halting, playing
-from tests.pilot.live_games import HeldLink, live, paused_after, until_a_call_is_held
+from tests.pilot.live_games import (
+    HeldLink,
+    ask_for_the_choice,
+    live,
+    paused_after,
+    until_a_call_is_held,
+)
 from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
@@ -111,8 +117,7 @@ async def test_staff_type_what_tangy_does_next_while_it_finishes_its_step(
 ) -> None:
     async with run(app=program) as pilot:
         await until_a_call_is_held(pilot, link, world)
-        await pilot.press("o")
-        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
+        await ask_for_the_choice(pilot)
         if gives_back:
             await pilot.press("escape")
             await until_shown(pilot, lambda: not live(pilot).control.taking_over)
@@ -131,8 +136,7 @@ async def test_the_line_for_what_tangy_does_next_ends_with_the_game(
     async with run(app=program) as pilot:
         await until_a_call_is_held(pilot, link, world)
         screen = live(pilot)
-        await pilot.press("o")
-        await until_shown(pilot, lambda: isinstance(pilot.app.screen, NextDialog))
+        await ask_for_the_choice(pilot)
         if typed:
             await pilot.press(*typed, "enter")
         await asyncio.to_thread(screen.control.apply, EndGame())
