@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
@@ -14,19 +13,16 @@ from tangy_profiles.declared.typed_observations import open_options
 from tangy_profiles.errors import TangyError
 from tangy_profiles.present_moment import as_present
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.inquiry_grammar import AsksAbout
 from tangy_tui.app.interruption import earlier_part
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.text.decisions import WHY_NOW
 from tangy_tui.text.earlier import before_words, earlier_messages
 from tangy_tui.text.games import (
     ANSWER_FIRST,
     LEAVE_DETAIL,
     NO_UNSEEN_FAULT,
-    NOTHING_DECIDED,
     REPORT_AFTER_LEAVING,
     REPORT_AT_END,
     REPORT_AT_HOME,
@@ -35,12 +31,9 @@ from tangy_tui.text.games import (
 )
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.register import staff_names
-from tangy_tui.text.whose_turn import WHOSE_TURN, about_lines, why_now_lines
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.dialogs.message import MessageDialog
-from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
@@ -49,7 +42,7 @@ from tangy_tui.ui.message_history import remember, remember_before
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens import play_keys
 from tangy_tui.ui.screens.play_keys import keys
-from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view
+from tangy_tui.ui.screens.play_view import ViewSource, show_view
 from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
@@ -232,58 +225,15 @@ class PlayPanels(TangyScreen[Tally]):
         health = self._supervision.world.health
         return SensorsScreen(self._workspace, sensors, health=health, shown=shown)
 
-    def action_why(self) -> None:
-        """Explain the chosen step, Tangy's question, or the next step and the last one."""
-        chosen = self.query_one(Transcript).chosen
-        fault = self._faults.asked_about if chosen is None else None
-        coming = "" if self._supervision.over else next_line(self._source())
-        name = staff_names(self._workspace.name)
-        plain = why_now_lines(self.control, name) if chosen is None else []
-        dialog: Screen[Any] | None
-        dialog = self._faults.dialog(fault.id) if fault else self.picture.why(chosen, coming)
-        if isinstance(dialog, WhyDialog):
-            dialog.plain = plain
-        if dialog is None and plain:
-            dialog = MessageDialog("\n".join(plain), WHY_NOW)
-        if dialog is not None:
-            self.app.push_screen(dialog)
-        else:
-            self._tell_now(NOTHING_DECIDED, "dim")
-
     def id_of(self, wanted: str) -> str:
         """Return the id of a person by name or id; raises TangyError if nobody is called so."""
         return self._workspace.find_person(wanted).id
-
-    def answer_about(self, about: AsksAbout) -> None:
-        """Tell when Tangy goes to the people whom a typed question names."""
-        told = about_lines(self.control, about, staff_names(self._workspace.name))
-        self.app.push_screen(MessageDialog("\n".join(told), WHOSE_TURN))
-
-    def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
-        """Explain the step chosen with Enter."""
-        event.stop()
-        if (dialog := self.picture.why_step(event.number)) is not None:
-            self.app.push_screen(dialog)
-
-    def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
-        """Explain the row of the policy chosen with Enter."""
-        event.stop()
-        self.app.push_screen(self.picture.why_row(event.index))
 
     def on_fault_list_chosen(self, event: FaultList.Chosen) -> None:
         """Show all about a fault."""
         event.stop()
         if (dialog := self._faults.dialog(event.id)) is not None:
             self.app.push_screen(dialog)
-
-    def on_asking_panel_why_wanted(self, event: AskingPanel.WhyWanted) -> None:
-        """Explain why Tangy asks, or when it goes to people."""
-        event.stop()
-        if event.about is not None:
-            self.answer_about(event.about)
-            return
-        self.query_one(Transcript).release()
-        self.action_why()
 
     def action_acknowledge(self) -> None:
         """Acknowledge the fault in the banner, after confirmation."""

@@ -65,7 +65,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.joining import ask_where, ask_who_joins
-from tangy_tui.ui.screens.play_panels import PlayPanels
+from tangy_tui.ui.screens.play_answers import PlayAnswers
 from tangy_tui.ui.screens.question_panel import AskingPanel, NoAnswer
 
 PACE_SECONDS = 1.0
@@ -74,7 +74,7 @@ SEEN_ANYWAY = ("paused", "goes on", "one step")
 """Notes that the key line and the status line show anyway."""
 
 
-class PlayStaff(PlayPanels):
+class PlayStaff(PlayAnswers):
     """Sends commands to the controller, and Tangy's questions to staff."""
 
     def __init__(self, workspace: Workspace, control: GameController) -> None:
