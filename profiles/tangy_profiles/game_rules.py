@@ -20,10 +20,10 @@ COMMAND_WORDS = frozenset({
     "could", "drive", "emergency", "end", "enough", "exit", "expert", "faster", "faults",
     "freeze", "give", "go", "guest", "halt", "help", "here", "how", "i", "is", "leave",
     "left", "let", "look", "more", "move", "n", "next", "no", "now", "one", "pace",
-    "pattern", "patterns", "pause", "people", "phrases", "play", "please", "quit", "reached",
-    "repeat", "resume", "say", "seen", "send", "several", "slower", "step", "stop", "take",
-    "tangy", "that", "the", "visit", "visits", "void", "wait", "what", "when", "where",
-    "which", "who", "whoa", "whose", "why", "y", "yes", "you",
+    "pattern", "patterns", "pause", "people", "phrases", "plan", "play", "please", "quit",
+    "reached", "repeat", "resume", "say", "seen", "send", "several", "slower", "step", "stop",
+    "take", "tangy", "that", "the", "time", "visit", "visits", "void", "wait", "what", "when",
+    "where", "which", "who", "whoa", "whose", "why", "y", "yes", "you",
 })  # fmt: skip
 """First words of what staff type in any game, so no word for a claim."""
 

@@ -23,6 +23,7 @@ StaffActionKind = Literal[
     "told",
     "heard",
     "pace",
+    "time planned",
     "took back",
     "claim right",
     "claim late",
@@ -68,7 +69,8 @@ def _staff_action(version: int, body: dict[str, Any]) -> dict[str, Any]:
 class StaffAction(EventRecord):
     """An action of staff other than behaviours and recoveries: a stop, an injected fault.
 
-    `person` is whom it concerns. `detail` depends on `did`: the pace in s, a card's number, the
+    `person` is whom it concerns. `detail` depends on `did`: the pace in s, until when the session
+    is planned (ISO 8601; "": without a limit), a card's number, the
     label of a call, the names of patterns or rules, the kinds of faults, the level of autonomy, the
     words that a person said, the seconds of a freeze, the behaviour that staff chose
     after they took over, or a note in words. `seconds` is the time in

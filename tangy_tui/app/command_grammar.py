@@ -87,6 +87,8 @@ MEANINGS: tuple[tuple[str, str], ...] = (
     ("take back", "the last number counts as not called"),
     ("take back B-5", "counts B-5 as not called"),
     ("pace 20", "calls every 20 s; or: faster, slower"),
+    ("plan 20 minutes", "you play for 20 minutes from now; or: 10 more minutes, plan until 15:40"),
+    ("how long", "says how long you have played, and when the planned time is over"),
     ("check 17", "checks card 17 against all calls; check 17 Rosa says whose it is"),
     ("NAME has card 17", "tells Tangy whose card it is, so that a claim names the person"),
     ("people, cards", "says who is here, with their seats and waits, and whose card is whose"),

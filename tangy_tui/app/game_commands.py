@@ -110,6 +110,18 @@ class ChangePace:
 
 
 @dataclass(frozen=True, slots=True)
+class PlanTime:
+    """Plan the time of the session: `minutes` from now, or that many more; 0: without a limit.
+
+    Or `until` a time of day (hour, minute).
+    """
+
+    minutes: int = 0
+    more: bool = False
+    until: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ClaimCard:
     """Check a card against all called numbers; `person` is the id of its owner.
 
@@ -259,6 +271,7 @@ GameCommand: TypeAlias = (
     | GiveBack
     | SetAutonomy
     | CallAgain
+    | PlanTime
     | Joins
     | HasCard
     | AskFor
@@ -284,6 +297,7 @@ AT_ONCE = (
     SetAutonomy,
     SetPace,
     ChangePace,
+    PlanTime,
     HasCard,
     AskFor,
     Tell,
@@ -299,6 +313,7 @@ WITHOUT_GAME = (
     SetAutonomy,
     SetPace,
     ChangePace,
+    PlanTime,
     HasCard,
     ChoosePatterns,
     LetWin,

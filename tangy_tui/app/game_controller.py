@@ -43,6 +43,7 @@ from tangy_tui.app.game_commands import (
     Pause,
     Phase,
     PlanCommand,
+    PlanTime,
     Reached,
     SetAutonomy,
     StopRobot,
@@ -52,6 +53,7 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.handing_over import HandingOver
 from tangy_tui.app.plan_controls import GamePlanControls
+from tangy_tui.app.planned_time import PlannedTime
 from tangy_tui.app.robot_controls import RobotControls
 from tangy_tui.app.staff_notes import Proposal, StaffNote
 from tangy_tui.app.staff_view import StaffView, StaffWatch, next_step
@@ -104,6 +106,7 @@ class GameController(HandingOver):
         self.by = by
         self.robot = RobotControls(robot, self.note, lambda: self.stopped, paced=paced)
         self.plan = GamePlanControls(supervision, self.note, by)
+        self.time = PlannedTime(supervision, past, by)
         self.answers = AnswerCollector(supervision)
         """Verifies answers to Tangy's questions; `answer` then carries them out."""
         self._void = void
@@ -317,6 +320,8 @@ class GameController(HandingOver):
                 return self._confirm(yes=yes)
             case Joins():
                 return self._let_in(command)
+            case PlanTime():
+                return [self.time.plan(command)]
             case Tell() | HasCard():
                 return [self.robot.do(command)]
             case CallAgain() | Drive() | AskFor():

@@ -42,8 +42,8 @@ class GameView:
     """As in `GameBeginning`."""
     seconds: Sparse[Count] = 0
     """Since the game began, in s, rounded down."""
-    minutes: Sparse[Count] = 0
-    """The planned length of the session in minutes; 0: no limit."""
+    ends: Sparse[str] = ""
+    """When the planned time of the session is over (ISO 8601); "": no limit."""
     paused: Sparse[Count | None] = None
     """How long the pause has lasted, in s, rounded down; null: the game is not paused."""
     people: Sparse[tuple[PersonNow, ...]] = ()
@@ -93,7 +93,7 @@ def _view_now(control: GameController) -> GameView | None:
         room=supervision.game.room,
         seconds=int(seen.seconds),
         paused=None if seen.paused is None else int(seen.paused),
-        minutes=supervision.game.changes.plan.minutes,
+        ends="" if (ends := control.time.ends) is None else ends.isoformat(),
         people=tuple(_in_whole_seconds(person) for person in seen.people),
         autonomy=control.autonomy.level,
         pace=seen.pace,

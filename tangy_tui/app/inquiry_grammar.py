@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from tangy_profiles.errors import TangyError
 
@@ -77,6 +77,13 @@ class AsksAbout:
 
     people: tuple[str, ...]
 
+
+@dataclass(frozen=True, slots=True)
+class AsksHowLong:
+    """A question about how long the session has lasted, and when it ends."""
+
+
+Question: TypeAlias = AsksAbout | AsksHowLong
 
 _SHORT = {
     "n't": " not",

@@ -20,6 +20,7 @@ from tangy_tui.app.game_commands import (
     SetPace,
     TakeBackCall,
 )
+from tangy_tui.app.time_grammar import read_time
 
 CHECK = "check"
 """The word before a card's number in every activity; an activity may define another."""
@@ -83,6 +84,8 @@ def read_planned(
     """
     if claim := _claim(said, find_person, rules):
         return claim
+    if (time := read_time(said)) is not None:
+        return time
     if rules.claim and (card := _CARD.fullmatch(said)):
         return HasCard(find_person(card[1] or card[4]), int(card[2] or card[3]))
     if pace := _PACE.fullmatch(said):

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from tangy_tui.app.game_commands import GameCommand
-from tangy_tui.app.inquiry_grammar import AsksAbout, read_question
+from tangy_tui.app.inquiry_grammar import AsksHowLong, Question, read_question
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.screen_grammar import Perform, read_screen
+from tangy_tui.app.time_grammar import asks_time
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +25,7 @@ def commands_in(typed: GameCommand | Several) -> tuple[GameCommand, ...]:
     return typed.commands if isinstance(typed, Several) else (typed,)
 
 
-Typed: TypeAlias = GameCommand | Several | AsksAbout | Perform
+Typed: TypeAlias = GameCommand | Several | Question | Perform
 
 
 def read_typed(
@@ -50,5 +51,7 @@ def read_typed(
         return Several(commands)
     if commands:
         return commands[0]
+    if asks_time(typed):
+        return AsksHowLong()
     word = read_question(typed, find_person) or read_screen(typed)
     return None if isinstance(word, Perform) and not can(word.action) else word

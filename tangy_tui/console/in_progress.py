@@ -6,14 +6,16 @@ Also that the planned time is over: the game goes on.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 
 from tangy_profiles.declared.speech import with_names
 from tangy_profiles.present_moment import as_present
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.text.games import says_line
+from tangy_tui.text.planned_time import after_end_words, time_is_up_words
 from tangy_tui.text.situations import Name
-from tangy_tui.text.staff_view import said_words, time_is_up_words
+from tangy_tui.text.staff_view import said_words
 from tangy_tui.text.telling import waiting_words
 
 
@@ -25,7 +27,7 @@ class ProgressLines:
         self._controller, self._name = controller, name
         self._going = ("", "", ("", tuple[str, ...]()))
         self._said = self._early = ""
-        self._late = False  # whether it was told that the planned time is over
+        self._late: tuple[str, datetime] | None = None  # the game, and the end that was told
 
     @property
     def asks(self) -> bool:
@@ -48,11 +50,17 @@ class ProgressLines:
         return [line for line in told if line]
 
     def _time_is_up(self) -> str:
-        """Return once that the planned time of the game is over; "" if there is nothing to tell."""
-        game = self._controller.supervision
-        minutes = game.game.changes.plan.minutes
-        before, self._late = self._late, 0 < minutes * 60 <= game.game.log.seconds
-        return time_is_up_words(minutes) if self._late > before and not game.over else ""
+        """Return once in a game that the planned time is over; "" if there is nothing to tell."""
+        game, time = self._controller.supervision, self._controller.time
+        left, ends = time.left, time.ends
+        if game.over or left is None or ends is None or left > 0:
+            return ""
+        late = game.game.game, ends
+        if late == self._late:
+            return ""
+        self._late = late
+        began_later = left + game.game.log.seconds <= 0
+        return (after_end_words if began_later else time_is_up_words)(ends, time.clock())
 
     def resumed(self) -> list[str]:
         """Return the line about what the chest screen of a resumed game still shows."""

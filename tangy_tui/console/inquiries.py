@@ -17,6 +17,7 @@ from tangy_tui.app.inquiry_grammar import (
 )
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.time_grammar import asks_time
 from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
@@ -25,6 +26,7 @@ from tangy_tui.text.earlier import earlier_fault_lines, earlier_lines
 from tangy_tui.text.faults import HALTED, advice_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.messages import NONE_YET
+from tangy_tui.text.planned_time import time_lines, time_words
 from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.situations import Name, state_words
 from tangy_tui.text.staff_lines import (
@@ -34,8 +36,7 @@ from tangy_tui.text.staff_lines import (
     SAY_IN_WORDS,
     nothing_to,
 )
-from tangy_tui.text.staff_view import person_words, time_words
-from tangy_tui.text.times import local_now
+from tangy_tui.text.staff_view import person_words
 from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, held_words, why_now_lines
 
 HELP = "You can type at any time:"
@@ -70,6 +71,8 @@ class Inquiries:
 
     def lines(self, text: str) -> list[str] | None:
         """Return the answer to a typed question; None if it is none."""
+        if asks_time(text):
+            return time_lines(self._controller)
         try:
             about = read_question(text, self._find_person)
         except TangyError as error:
@@ -158,5 +161,5 @@ class Inquiries:
         """Tell the time of a game in which it is the time of the home, not simulated."""
         if self._game.world.played_in == SIMULATED:
             return ""
-        view, plan = self._controller.view(), self._game.game.changes.plan
-        return f"{time_words(view.seconds, plan.minutes, view.paused, local_now())}."
+        view, time = self._controller.view(), self._controller.time
+        return f"{time_words(view.seconds, time.ends, view.paused, time.clock())}."

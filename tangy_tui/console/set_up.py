@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from datetime import timedelta
 from difflib import get_close_matches
 from time import sleep
 
@@ -19,16 +20,19 @@ from tangy_tui.app.game_commands import (
     GoOn,
     Joins,
     LetWin,
+    PlanTime,
     SetPace,
     StopRobot,
 )
 from tangy_tui.app.inquiry_grammar import read_inquiry
 from tangy_tui.app.plan_grammar import lines_of
+from tangy_tui.app.planned_time import planned_end
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.console.trying_devices import TryingDevices
 from tangy_tui.text import set_up as text
 from tangy_tui.text.control import noted_words
+from tangy_tui.text.times import local_now
 
 _NO = ("end", "n", "no", "quit", "leave")
 """Lines that do not begin a game that is not ready."""
@@ -234,6 +238,11 @@ class SetUpLines:
                 setup.patterns = list(names)
             case SetPace(seconds):
                 setup.pace = seconds
+            case PlanTime() as planned:
+                now = local_now()
+                ends = planned_end(planned, now, now + timedelta(minutes=setup.minutes))
+                left = 0.0 if ends is None else (ends - now).total_seconds()
+                setup.minutes = round(left / 60)
             case ChangePace(by):
                 setup.turn_pace(-by)
             case LetWin(several, visits):

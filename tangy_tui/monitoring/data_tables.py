@@ -50,6 +50,7 @@ def _cell(value: Any) -> Cell:
 
 def _games(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
     game = replay.game
+    planned = None if replay.session is None else replay.session.ends
     yield {
         "number": game.number,
         "begun": game.at.isoformat(),
@@ -67,6 +68,7 @@ def _games(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
         "other_faults": game.other,
         "pauses": game.pauses[0],
         "paused_seconds": game.pauses[1],
+        "planned_until": None if planned is None else planned.isoformat(),
         "staff_pauses": replay.staff_pauses.count,
         "staff_paused_seconds": replay.staff_pauses.seconds,
     }
@@ -189,7 +191,7 @@ TABLES = (
         "games",
         (*HEAD, "number", "begun", "ended", "activity", "policy", "digest", "people", "steps",
          "seconds", "stopped", "due", "rounds_left", "critical_faults", "other_faults",
-         "pauses", "paused_seconds", "staff_pauses", "staff_paused_seconds"),
+         "pauses", "paused_seconds", "planned_until", "staff_pauses", "staff_paused_seconds"),
         _games,
     ),
     DataTable(

@@ -25,6 +25,7 @@ from tangy_profiles.game_records import (
 )
 from tangy_profiles.past_game import OpenRequests
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
+from tangy_profiles.session_time import SessionTime, session_times
 from tangy_profiles.staff_records import StaffAction, StaffActionKind
 from tangy_profiles.store import Event, Store
 from tangy_tui.monitoring.done import Done as Done
@@ -158,6 +159,8 @@ class GameReplay:
     """The changes that `moments` tell as actions of staff, or not at all."""
     activity: Activity | None = None
     """The activity of the game; None if it is unknown."""
+    session: SessionTime | None = None
+    """The planned time of its session."""
 
     @property
     def title(self) -> str:
@@ -229,7 +232,9 @@ def read_replays(
         game = getattr(event.record, "game", None)
         if game in events:
             events[game].append(event)
-    return [_replay(game, events[game.id], activities.get(game.activity), names) for game in games]
+    replays = [_replay(one, events[one.id], activities.get(one.activity), names) for one in games]
+    times = session_times(store, events)
+    return [replace(one, session=times.get(one.game.id)) for one in replays]
 
 
 def _events(store: Store, games: Sequence[Game]) -> Iterator[Event[EventRecord]]:

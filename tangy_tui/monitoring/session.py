@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.session_time import SessionTime
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
@@ -69,6 +70,11 @@ class Session:
     def player_facts(self) -> list[PlayerFacts]:
         """People's answers and counts, game by game, in an activity by facts."""
         return player_facts(self.replays)
+
+    @property
+    def times(self) -> tuple[SessionTime, ...]:
+        """The planned times: one for each time that staff set up for games."""
+        return tuple(dict.fromkeys(one.session for one in self.replays if one.session is not None))
 
     @property
     def activities(self) -> tuple[Activity, ...]:
@@ -172,6 +178,10 @@ class Session:
             "answer_waits": self.answer_waits.to_json(),
             "set_ups": self.set_ups.to_json(),
             "interruptions": self.interruptions.to_json(),
+            "planned": [
+                {"begins": one.begins.isoformat(), "ends": one.ends and one.ends.isoformat()}
+                for one in self.times
+            ],
             "games": [
                 {
                     **r.game.to_json(),

@@ -9,6 +9,7 @@ from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import CallAgain, ClaimCard, ComesIn, GoesAway, TakeBackCall
 from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
+from tangy_tui.text.planned_time import SIMULATED_TIME, planned_words
 from tangy_tui.text.player_reports import player_report_words
 
 if TYPE_CHECKING:
@@ -135,6 +136,10 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "pace":
             spoken = ", or as soon as it has spoken" if float(about) < SPOKEN_SECONDS else ""
             return f"Tangy calls every {about} seconds{spoken}."
+        case "time planned":
+            return planned_words(about, noted.words)
+        case "not in a simulation":
+            return SIMULATED_TIME
         case "claim right":
             return f"{_whose_card(noted, name)} wins. Tangy tells everybody: {noted.words}"
         case "claim late":

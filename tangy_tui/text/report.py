@@ -29,6 +29,7 @@ from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.numbers import counted, listed, often
+from tangy_tui.text.planned_time import planned_until_words
 from tangy_tui.text.situations import SOMEBODY, Name
 from tangy_tui.text.times import length, time_of_day
 
@@ -72,7 +73,8 @@ def how_long_words(session: Session) -> str:
     simulated = all(replay.game.world == SIMULATED for replay in session.replays)
     game_time = f" {GAME_TIME}" if simulated and session.replays else ""
     told = f"{length(session.seconds)}{game_time}{f', of which {words}' if words else ''}"
-    return f"{told}{_interrupted_words(breaks)}"
+    planned = planned_until_words(session.times)
+    return f"{told}{_interrupted_words(breaks)}{f'; {planned}' if planned else ''}"
 
 
 def _pauses_words(pauses: PauseTotal) -> str:

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
+from tangy_profiles.session_time import time_in
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_tui.app.card_news import BY as TANGY
 from tangy_tui.app.game_commands import AUTONOMY
@@ -92,6 +93,8 @@ def did_words(noted: Noted, name: Name) -> str:
             return f"told Tangy about {person or 'the group'}: {detail}"
         case "pace":
             return f"set the pace to a call every {detail} s"
+        case "time planned":
+            return f"planned to play {_until_words(detail)}"
         case "took back":
             return f"took a call back: {detail}"
         case "claim right":
@@ -165,6 +168,8 @@ def action_words(noted: Noted, name: Name) -> str:
             return f"Tangy heard from {person or 'the group'}: {detail}"
         case "pace":
             return f"the pace was set to {detail} s"
+        case "time planned":
+            return f"the session was planned {_until_words(detail)}"
         case "took back":
             return f"a call was taken back: {detail}"
         case "claim right":
@@ -206,6 +211,12 @@ def action_words(noted: Noted, name: Name) -> str:
             return _named(detail, name)
         case forgotten:
             assert_never(forgotten)
+
+
+def _until_words(detail: str) -> str:
+    """Tell until when the time was planned (ISO 8601); "": without a limit."""
+    ends = time_in(detail)
+    return "without a time limit" if ends is None else f"until {ends.astimezone():%H:%M}"
 
 
 def _autonomy_words(level: str) -> str:

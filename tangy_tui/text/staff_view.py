@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from datetime import datetime, timedelta
-from typing import TypeAlias, assert_never
+from typing import assert_never
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
@@ -17,9 +16,6 @@ from tangy_tui.learning.policy import Decision
 from tangy_tui.text.control import WAITS_FOR_YOU, autonomy_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import addressed_step, reason_of
-
-Fact: TypeAlias = str | tuple[str, ...]
-"""A fact in words; several: the same in shorter and shorter words."""
 
 STEP_SECONDS = 10
 """Waits of less than a minute are told in steps of so many s."""
@@ -38,12 +34,6 @@ FIRST_BY_CLAIM = "first: a claim"
 OVER = "The game is over."
 
 
-def clock_words(seconds: float) -> str:
-    """Format a time in s as minutes and seconds."""
-    whole = max(0, int(seconds))
-    return f"{whole // 60}:{whole % 60:02}"
-
-
 def lasting_words(seconds: float) -> str:
     """Write how long somebody has waited (s), as coarse as staff need it.
 
@@ -51,43 +41,6 @@ def lasting_words(seconds: float) -> str:
     """
     whole = max(0, int(seconds))
     return f"{whole // 60} min" if whole >= 60 else f"{whole - whole % STEP_SECONDS} s"
-
-
-def time_words(
-    seconds: float, minutes: int, paused: float | None = None, now: datetime | None = None
-) -> str:
-    """Tell how long the game has lasted (s), and how much of the planned time is left.
-
-    Args:
-        seconds: since the game began, pauses included.
-        minutes: the planned time; 0: no limit.
-        paused: how long the pause has lasted (s); None: the game is not paused.
-        now: the local time of day, to tell when the planned time is over; None: do not tell it.
-    """
-    told = [f"{clock_words(seconds)} so far"]
-    if paused is not None and paused >= 1:
-        told.append(f"paused {clock_words(paused)}")
-    if minutes:
-        left = minutes * 60 - seconds
-        told.append(f"{clock_words(left)} left" if left > 0 else "time is up")
-        if now is not None and left > 0:
-            told.append(f"until {now + timedelta(seconds=left):%H:%M}")
-    return ", ".join(told)
-
-
-def time_is_up_words(minutes: int) -> str:
-    """Tell that the planned time of a game is over."""
-    return f"Time is up: you planned {minutes} minutes. The game goes on. Type end to end it."
-
-
-def time_facts(seconds: float, minutes: int, paused: float | None, now: datetime | None) -> Fact:
-    """Tell the same with the time of day, and in two shorter ways for less room."""
-    told = (
-        time_words(seconds, minutes, paused, now),
-        time_words(seconds, minutes, paused),
-        time_words(seconds, 0, paused),
-    )
-    return told if paused is not None else told[:2]
 
 
 def pace_words(view: StaffView) -> str:

@@ -9,14 +9,12 @@ from tangy_profiles.game_world import BENCH, LIVE
 from tangy_tui.app.game_commands import Phase
 from tangy_tui.app.game_view import GameView
 from tangy_tui.text.faults import status_words
+from tangy_tui.text.planned_time import Fact, time_facts, time_words
 from tangy_tui.text.situations import OVER_NOW, Name
 from tangy_tui.text.staff_view import (
-    Fact,
     labels_words,
     lasting_words,
     tangy_words,
-    time_facts,
-    time_words,
 )
 from tangy_tui.text.times import local_now
 from tangy_tui.text.worlds import WORLDS
@@ -136,7 +134,7 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
     """Describe the time, who waits for help, the calls, and what staff have chosen."""
     waits, called = waiting_words(view, name), called_words(view, activity)
-    time = time_words(view.seconds, view.minutes, view.paused, _now(view))
+    time = time_words(view.seconds, _ends(view), view.paused, _now(view))
     told = f"{time}{f'. {waits}' if waits else ''}."
     chosen = ", ".join(filter(None, reversed(_chosen(view))))
     return [*filter(None, (told, called)), f"{chosen}."]
@@ -147,11 +145,16 @@ def _now(view: GameView) -> datetime | None:
     return local_now() if view.world in (BENCH, LIVE) else None
 
 
+def _ends(view: GameView) -> datetime | None:
+    """Return when the planned time of the session is over; None: no limit."""
+    return datetime.fromisoformat(view.ends) if view.ends else None
+
+
 def facts(view: GameView) -> list[Fact]:
     """Return the facts beside the call."""
     called = len(view.scene.called)
     return [
-        time_facts(view.seconds, view.minutes, view.paused, _now(view)),
+        time_facts(view.seconds, _ends(view), view.paused, _now(view)),
         f"{called} called" if called else "",
         *_chosen(view),
     ]

@@ -150,7 +150,6 @@ async def _play(
         screen = LiveScreen(
             workspace, supervision, world, games=games, teacher=teacher or setup.on_duty, past=past
         )
-        screen.minutes = past.beginning.plan.minutes if past is not None else setup.minutes
         screen.control.admission = Admission(workspace, world)
         screen.closes = robot.close
         screen.takes = as_before_words(setup) if as_before else ""

@@ -28,7 +28,7 @@ def robot(taught: Path) -> Iterator[Robot]:
 
 
 def next_of(robot: Robot) -> str:
-    return next_line(ViewSource(robot.world, robot.control, 0, robot.workspace.name))
+    return next_line(ViewSource(robot.world, robot.control, robot.workspace.name))
 
 
 def test_until_the_card_is_read_the_next_step_is_to_look_at_it(robot: Robot) -> None:
@@ -64,7 +64,7 @@ def test_who_waits_for_some_numbers_is_told_so(taught: Path) -> None:
         planned.play(calls=len(world.called_now) + 1)
         assert not planned.supervision.over
     calls, first = world.tracker.calls_first, world.tracker.queue[0]
-    words = next_line(ViewSource(world, planned.control, 0, name))
+    words = next_line(ViewSource(world, planned.control, name))
     then = f"{calls} numbers first, then {name(first)}, as everybody waits for one."
     assert words == f"Next: call number. {then}"
     people = {one.id: one for one in planned.control.view().people}
@@ -97,7 +97,7 @@ def test_a_claim_that_wins_is_news_until_tangy_is_there(robot: Robot) -> None:
     numbers = world.numbers_on(17)
     assert numbers is not None
     world.called.extend(numbers)
-    shown = ViewSource(world, robot.control, 0, robot.workspace.name)
+    shown = ViewSource(world, robot.control, robot.workspace.name)
     goes = f"Next: go to {name} (first because of the claim)."
     world.tracker.calls_first = 1  # others come later
     plan.say_early(ClaimCard(17, "user3"))  # while Tangy carries out its step
@@ -171,7 +171,7 @@ def test_the_result_of_a_claim_is_told_at_once_and_stays_until_the_next_call(
 ) -> None:
     robot.next(2)
     world, plan = robot.world, robot.control.plan
-    shown = ViewSource(world, robot.control, 0, robot.workspace.name)
+    shown = ViewSource(world, robot.control, robot.workspace.name)
     claim = ClaimCard(17, "user3")
     card = f"Card 17 ({robot.workspace.name('user3')})"
     plan.say_early(claim)  # while Tangy carries out its step
@@ -192,5 +192,5 @@ def test_a_number_that_is_being_called_may_decide_a_claim(robot: Robot) -> None:
     assert numbers is not None
     robot.world.calls.calling = numbers[:1]
     robot.control.plan.say_early(ClaimCard(17, "user3"))
-    shown = ViewSource(robot.world, robot.control, 0, robot.workspace.name)
+    shown = ViewSource(robot.world, robot.control, robot.workspace.name)
     assert "Tangy checks it as soon as it has called" in news_line(shown)

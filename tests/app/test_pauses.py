@@ -18,7 +18,7 @@ from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.pauses import PauseClock, PauseTotal
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import read_session
-from tangy_tui.text.staff_view import time_words
+from tangy_tui.text.planned_time import time_words
 from tests.app.test_interruption import Robot
 
 
@@ -137,4 +137,4 @@ def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> 
     view = view_of(robot.control)
     assert view is not None and view.paused == 200
     (line,) = Inquiries(robot.control, workspace.name, None, str).lines("where") or []
-    assert time_words(view.seconds, 0, 200) in line
+    assert time_words(view.seconds, None, 200) in line

@@ -162,7 +162,7 @@ def test_after_a_win_staff_read_that_the_game_goes_on(planned: Planned) -> None:
     planned.begin(GamePlan(("line", "full card")))
     while not planned.world.tracker.finished:
         planned.events += go_on_by_script(planned.control, expert=True)
-    line = next_line(ViewSource(planned.world, planned.control, 0, str))
+    line = next_line(ViewSource(planned.world, planned.control, str))
     assert planned.world.patterns.left[0].label in line
     assert planned.world.activity.behaviours["valediction"].question not in line
     assert line in why_now_lines(planned.control, str)

@@ -109,7 +109,8 @@ async def test_without_the_set_up_a_game_takes_the_last_plan_and_says_so(
         robot.answers.set()
         await until_shown(pilot, lambda: "As you left your last game." in pilot.text())
         screen = pilot.app.screen
-        assert isinstance(screen, LiveScreen) and screen.minutes == 40
+        assert isinstance(screen, LiveScreen)
+        await until(lambda: screen.control.time.ends is not None)
         assert screen.control.plan.away == {"user3"} and screen.world.pace == 20.0
 
 

@@ -28,8 +28,9 @@ from tangy_tui.app.watching import Guest
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.control import autonomy_words
+from tangy_tui.text.planned_time import clock_words, time_words
 from tangy_tui.text.situations import OVER_NOW
-from tangy_tui.text.staff_view import clock_words, lasting_words, person_words, time_words
+from tangy_tui.text.staff_view import lasting_words, person_words
 from tangy_tui.text.watching import CLOSED, GONE, NO_GAME, PHASES, robot_words
 from tangy_tui.text.worlds import WORLDS
 from tangy_tui.ui.screens.watch import WatchScreen
@@ -90,7 +91,7 @@ async def test_the_screen_shows_the_times_and_waits_of_the_staff_panel(
         (asks,) = (one for one in seen.people if one.id == first)
         words = person_words(asks)
         assert clock_words(seen.seconds) != "0:00"
-        await until_shown(pilot, lambda: time_words(seen.seconds, 0) in pilot.text())
+        await until_shown(pilot, lambda: time_words(seen.seconds, None) in pilot.text())
         told = f"User {first.removeprefix('user')} {lasting_words(asks.waits or 0.0)}"
         assert (told if size == SMALL else words) in pilot.text()
 

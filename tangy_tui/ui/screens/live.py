@@ -33,6 +33,7 @@ from tangy_tui.text.joining import GOES_ON, joined_words, setting_up_words
 from tangy_tui.text.live_games import LOOKS_ROUND, frozen_words
 from tangy_tui.text.live_news import seated_words
 from tangy_tui.text.missing_devices import missing_words
+from tangy_tui.text.planned_time import after_end_words
 from tangy_tui.text.situations import OVER_NOW
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.fault_console import Work
@@ -150,7 +151,12 @@ class LiveScreen(LiveStaff):
             await self._until_going()
         if self.world.lost:
             self._write(LOOKS_ROUND, "warn")
-        return await super()._begin_game()
+        begun = await super()._begin_game()
+        time = self.control.time
+        if time.ends is not None and time.ends <= time.clock():
+            said = after_end_words(time.ends, time.clock(), by_key=True)
+            self._tell_now(self._told(said), "warn")
+        return begun
 
     async def _attend_beside(self, work: Work) -> list[Event]:
         """Act on the fault that halts the robot, which may restart the robot process."""

@@ -141,8 +141,7 @@ class PlayScreen(PlayStaff):
     def action_again(self) -> None:
         """Play one more game, now or after this one, after confirmation."""
         if not self._refused():
-            ends = self._supervision.over
-            self._sure(text.ANOTHER, "" if ends else text.ANOTHER_DETAIL, self._another)
+            self._sure(text.ANOTHER, self._another_detail(), self._another)
 
     def _another(self) -> None:
         if self._refused():

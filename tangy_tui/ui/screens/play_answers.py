@@ -6,9 +6,10 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.app.inquiry_grammar import AsksAbout
+from tangy_tui.app.inquiry_grammar import AsksHowLong, Question
 from tangy_tui.text.decisions import WHY_NOW
-from tangy_tui.text.games import NOTHING_DECIDED
+from tangy_tui.text.games import ANOTHER_DETAIL, NOTHING_DECIDED
+from tangy_tui.text.planned_time import HOW_LONG, left_words, time_lines
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.whose_turn import WHOSE_TURN, about_lines, why_now_lines
 from tangy_tui.ui.dialogs.message import MessageDialog
@@ -41,8 +42,11 @@ class PlayAnswers(PlayPanels):
         else:
             self._tell_now(NOTHING_DECIDED, "dim")
 
-    def answer_about(self, about: AsksAbout) -> None:
-        """Tell when Tangy goes to the people whom a typed question names."""
+    def answer_about(self, about: Question) -> None:
+        """Tell when Tangy goes to the people whom a typed question names, or how long you play."""
+        if isinstance(about, AsksHowLong):
+            self.app.push_screen(MessageDialog("\n".join(time_lines(self.control)), HOW_LONG))
+            return
         told = about_lines(self.control, about, staff_names(self._workspace.name))
         self.app.push_screen(MessageDialog("\n".join(told), WHOSE_TURN))
 
@@ -65,3 +69,10 @@ class PlayAnswers(PlayPanels):
             return
         self.query_one(Transcript).release()
         self.action_why()
+
+    def _another_detail(self) -> str:
+        """Tell when another game begins, and what is left of the planned time."""
+        begins = "" if self._supervision.over else ANOTHER_DETAIL
+        time = self.control.time
+        left = left_words(time.ends, time.clock(), by_key=True)
+        return " ".join(filter(None, (begins, self._told(left))))

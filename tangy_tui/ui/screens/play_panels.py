@@ -79,8 +79,6 @@ class PlayPanels(TangyScreen[Tally]):
         self._workspace = workspace
         self.control = control
         self._supervision = control.supervision
-        self.minutes = 0
-        """The planned length of the session in minutes; 0: no limit."""
         self.picture = GamePicture(self, workspace, control.supervision)
         self.picture.scene = lambda: control.plan.scene
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
@@ -181,7 +179,7 @@ class PlayPanels(TangyScreen[Tally]):
         name = staff_names(self._workspace.name)
         world = self._supervision.world
         report = REPORT_AT_HOME if self._leads_home else REPORT_AT_END
-        return ViewSource(world, self.control, self.minutes, name, self.picture.said, report)
+        return ViewSource(world, self.control, name, self.picture.said, report)
 
     def _leave_detail(self, follow: int) -> str:
         """Tell what happens if staff leave in the middle of a game, which some were to follow."""

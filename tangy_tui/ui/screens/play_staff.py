@@ -33,7 +33,7 @@ from tangy_tui.app.game_commands import (
     asked_for,
 )
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.inquiry_grammar import AsksAbout
+from tangy_tui.app.inquiry_grammar import Question
 from tangy_tui.app.joining import NEW, Admission
 from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.screen_grammar import Perform
@@ -263,7 +263,7 @@ class PlayStaff(PlayAnswers):
             await perform(self, command.action, command.on)
         elif isinstance(command, StopRobot):
             await self.run_action("app.stop")
-        elif isinstance(command, AsksAbout):
+        elif isinstance(command, Question):
             self.answer_about(command)
         elif command is not None:
             for one in commands_in(command):

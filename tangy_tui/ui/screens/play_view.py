@@ -14,7 +14,7 @@ from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
 from tangy_tui.text.control import claimed_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
-from tangy_tui.text.times import local_now
+from tangy_tui.text.planned_time import Fact, time_facts
 from tangy_tui.ui.widgets.call_board import CallBoard, column_row
 from tangy_tui.ui.widgets.staff_panel import BOARD, PersonLine, StaffPanel
 from tangy_tui.world import World
@@ -26,14 +26,13 @@ BEFORE = 4
 
 @dataclass(frozen=True, slots=True)
 class ViewSource:
-    """What a view is shown with: the world, the controller, the planned minutes, names.
+    """What a view is shown with: the world, the controller, names.
 
     `said` is Tangy's last speech, "" if there is none yet.
     """
 
     world: World
     control: GameController
-    minutes: int
     name: Callable[[str], str]
     said: str = ""
     report: str = ""
@@ -112,11 +111,12 @@ def next_line(shown: ViewSource) -> str:
     return f"{text.PAUSES_THEN if control.stepping else text.PAUSED} {words}".strip()
 
 
-def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[text.Fact]:
+def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[Fact]:
     """Return the facts beside the call, with the last few calls if wanted."""
     world, label = shown.world, shown.world.activity.deck.label
-    now = None if world.played_in == SIMULATED else local_now()  # simulated time runs otherwise
-    time = text.time_facts(view.seconds, shown.minutes, view.paused, now)
+    planned = shown.control.time
+    now = None if world.played_in == SIMULATED else planned.clock()  # simulated time runs otherwise
+    time = time_facts(view.seconds, planned.ends, view.paused, now)
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
     if not world.activity.deck.columns:  # the activity has no calls
         return [
@@ -124,8 +124,7 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[text.Fact]
             text.tangy_words(shown.control.autonomy.level, battery_of(world)),
         ]
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
-    planned = world if isinstance(world, PlannedGame) else None
-    patterns = getattr(planned, "patterns", None)
+    patterns = getattr(world, "patterns", None) if isinstance(world, PlannedGame) else None
     return [
         f"{count}   {before}".rstrip(),
         time,

@@ -19,7 +19,7 @@ from tangy_tui.app.answers import Spoken
 from tangy_tui.app.command_grammar import command_reader
 from tangy_tui.app.game_commands import Accept, EndGame, GameCommand, GiveBack, StopRobot, asked_for
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.inquiry_grammar import AsksAbout
+from tangy_tui.app.inquiry_grammar import Question
 from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.typed_line import commands_in, read_typed
@@ -86,7 +86,7 @@ class AskingPanel(Vertical):
     class WhyWanted(Message):
         """The teacher asked why, or when Tangy goes to people: explain it."""
 
-        def __init__(self, about: AsksAbout | None = None) -> None:
+        def __init__(self, about: Question | None = None) -> None:
             super().__init__()
             self.about = about
 
@@ -275,7 +275,7 @@ class AskingPanel(Vertical):
         except TangyError as error:
             self._return(typed, str(error))
             return
-        if isinstance(command, Perform | AsksAbout):
+        if isinstance(command, Perform | Question):
             self.query_one(CommandBar).ready()
             self._show(command)
         elif command is None or (isinstance(command, Accept) and not self._acceptable):
@@ -288,10 +288,10 @@ class AskingPanel(Vertical):
             for one in commands_in(command):
                 self._carry_out(one)
 
-    def _show(self, word: Perform | AsksAbout) -> None:
+    def _show(self, word: Perform | Question) -> None:
         """Show an explanation, or run a key's action."""
-        if isinstance(word, AsksAbout) or word.action == "why":
-            self.post_message(self.WhyWanted(word if isinstance(word, AsksAbout) else None))
+        if isinstance(word, Question) or word.action == "why":
+            self.post_message(self.WhyWanted(word if isinstance(word, Question) else None))
         else:
             self.app.run_worker(perform(self.screen, word.action, word.on))
 

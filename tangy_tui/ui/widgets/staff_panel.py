@@ -8,7 +8,8 @@ from rich.cells import cell_len
 from textual import events
 from textual.content import Content
 
-from tangy_tui.text.staff_view import Fact, more_words
+from tangy_tui.text.planned_time import Fact
+from tangy_tui.text.staff_view import more_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.rows import Row, RowView, fit, shorten
 from tangy_tui.ui.widgets.wrapping import WORD, wrap

@@ -1,0 +1,89 @@
+"""The planned time of the session that a controller runs, and staff's changes of it."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import SIMULATED
+from tangy_profiles.past_game import PastGame
+from tangy_profiles.session_time import SessionTime
+from tangy_tui.app.game_commands import PlanTime
+from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.monitoring.supervision import Supervision
+
+HALF_DAY = timedelta(hours=12)
+
+
+class PlannedTime:
+    """Reads the planned time of the session from the log, and logs what staff plan anew."""
+
+    def __init__(self, supervision: Supervision, past: PastGame | None, by: str) -> None:
+        """Read the time of a supervision's games, or of the game that it resumes first."""
+        self._log, self._facilitation, self._by = supervision.game.log, supervision.game, by
+        self._supervision = supervision
+        self._resumes = "" if past is None else past.beginning.game
+
+    @property
+    def _game(self) -> str:
+        return self._facilitation.game or self._resumes
+
+    @property
+    def now(self) -> SessionTime | None:
+        """The planned time; None before the first game."""
+        return self._log.session_time(self._game) if self._game else None
+
+    @property
+    def ends(self) -> datetime | None:
+        """When the planned time is over; None: there is no limit, or no game has begun."""
+        return None if (time := self.now) is None else time.ends
+
+    def clock(self) -> datetime:
+        """Return the time by the clock of the log, which the planned time is compared with."""
+        return self._log.now()
+
+    @property
+    def left(self) -> float | None:
+        """The time left in s, negative once it is over; None: there is no limit."""
+        return None if (ends := self.ends) is None else (ends - self.clock()).total_seconds()
+
+    def plan(self, command: PlanTime) -> StaffNote:
+        """Plan the time anew, from now on; raises TangyError if that cannot be."""
+        if (time := self.now) is None:
+            return StaffNote("no game")
+        if self._supervision.world.played_in == SIMULATED:
+            return StaffNote("not in a simulation")
+        now = self.clock()
+        ends = planned_end(command, now, time.ends)
+        running = not self._supervision.over
+        self._log.plan_time(self._game, ends, self._by, timed=running)
+        if ends is None:
+            return StaffNote("time planned")
+        minutes = round((ends - now).total_seconds() / 60)
+        return StaffNote("time planned", ends.isoformat(), str(minutes))
+
+
+def planned_end(command: PlanTime, now: datetime, before: datetime | None) -> datetime | None:
+    """Return when the time is over that staff plan; None: without a limit.
+
+    Args:
+        command: what staff said.
+        now: the present time.
+        before: when the time planned before is over; None: there is none.
+
+    Raises:
+        TangyError: that time has passed.
+    """
+    if command.until is not None:
+        hour, minute = command.until
+        local = now.astimezone()
+        ends = local.replace(hour=hour, minute=minute, second=0, microsecond=0)
+        if local - ends > HALF_DAY:
+            ends += timedelta(days=1)
+        if ends <= local:
+            raise TangyError(f"It is {local:%H:%M} already. Plan a later time.")
+        return ends
+    if not command.minutes:
+        return None
+    begins = max(now, before or now) if command.more else now
+    return begins + timedelta(minutes=command.minutes)

@@ -1,0 +1,135 @@
+"""Words for the time of a game, and for the planned time of its session."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import TYPE_CHECKING, TypeAlias
+
+from tangy_profiles.game_world import SIMULATED
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.times import local_now
+
+if TYPE_CHECKING:
+    from tangy_profiles.session_time import SessionTime
+    from tangy_tui.app.game_controller import GameController
+
+Fact: TypeAlias = str | tuple[str, ...]
+"""A fact in words; several: the same in shorter and shorter words."""
+
+HOW_LONG = "How long do you play?"
+"""The title of the answer about the planned time."""
+MORE = "To plan more, type: plan 20 minutes."
+MORE_BY_KEY = "To plan more, press {command} and type: plan 20 minutes."
+NO_END = "You planned no end. To plan one, type: plan 20 minutes."
+PAUSES_COUNT = "Pauses count: the end stays the same."
+SIMULATED_TIME = "A simulated game has no planned time."
+
+
+def clock_words(seconds: float) -> str:
+    """Format a time in s as minutes and seconds."""
+    whole = max(0, int(seconds))
+    return f"{whole // 60}:{whole % 60:02}"
+
+
+def end_words(at: datetime, now: datetime) -> str:
+    """Write the local time of day, with the day unless that is today."""
+    local, today = at.astimezone(), now.astimezone()
+    return f"{local:%H:%M}" if local.date() == today.date() else f"{local.day} {local:%b %H:%M}"
+
+
+def time_words(
+    seconds: float,
+    ends: datetime | None,
+    paused: float | None = None,
+    now: datetime | None = None,
+    *,
+    until: bool = True,
+) -> str:
+    """Tell how long the game has lasted (s), and how much of the session's planned time is left.
+
+    Args:
+        seconds: since the game began, pauses included.
+        ends: when the planned time is over; None: no limit.
+        paused: how long the pause has lasted (s); None: the game is not paused.
+        now: the local time of day; None: the game is not played in the time of the home.
+        until: whether to tell the time of day at which the planned time is over.
+    """
+    told = [f"{clock_words(seconds)} so far"]
+    if paused is not None and paused >= 1:
+        told.append(f"paused {clock_words(paused)}")
+    if ends is not None and now is not None:
+        left = (ends - now).total_seconds()
+        told.append(f"{clock_words(left)} left" if left > 0 else "time is up")
+        if until and left > 0:
+            told.append(f"until {end_words(ends, now)}")
+        elif until:
+            told[-1] += f" since {end_words(ends, now)}"
+    return ", ".join(told)
+
+
+def time_facts(
+    seconds: float, ends: datetime | None, paused: float | None, now: datetime | None
+) -> Fact:
+    """Tell the same with the time of day, and in two shorter ways for less room."""
+    told = (
+        time_words(seconds, ends, paused, now),
+        time_words(seconds, ends, paused, now, until=False),
+        time_words(seconds, None, paused),
+    )
+    return told if paused is not None else told[:2]
+
+
+def time_is_up_words(ends: datetime, now: datetime) -> str:
+    """Tell that the planned time is over while a game goes on."""
+    until = end_words(ends, now)
+    return (
+        f"Time is up: you planned to play until {until}. The game goes on. Type end to end it. "
+        f"{MORE}"
+    )
+
+
+def after_end_words(ends: datetime, now: datetime, *, by_key: bool = False) -> str:
+    """Tell that a game begins after the planned time, and how to plan more."""
+    more = MORE_BY_KEY if by_key else MORE
+    return f"The planned time has been over since {end_words(ends, now)}. {more}"
+
+
+def left_words(ends: datetime | None, now: datetime, *, by_key: bool = False) -> str:
+    """Tell what is left of the planned time; "" if there is no limit."""
+    if ends is None:
+        return ""
+    if ends <= now:
+        return after_end_words(ends, now, by_key=by_key)
+    minutes = max(1, round((ends - now).total_seconds() / 60))
+    return f"You planned to play until {end_words(ends, now)}: {counted(minutes, 'minute')} left."
+
+
+def planned_words(ends: str, minutes: str) -> str:
+    """Tell until when the time is planned now (ISO 8601); "": without a limit."""
+    if not ends:
+        return "No time limit: you play as long as you like."
+    until = end_words(datetime.fromisoformat(ends), local_now())
+    return f"You play until {until} ({counted(int(minutes), 'minute')} from now)."
+
+
+def time_lines(control: GameController) -> list[str]:
+    """Answer how long the session has lasted, and when it ends."""
+    view, world = control.view(), control.supervision.world
+    game = f"This game: {time_words(view.seconds, None, view.paused)}."
+    if world.played_in == SIMULATED:
+        return [game, SIMULATED_TIME]
+    if (time := control.time.now) is None:
+        return [game]
+    now = control.time.clock()
+    told = [game, f"You began at {end_words(time.begins, now)}."]
+    if time.ends is None:
+        return [*told, NO_END]
+    left = left_words(time.ends, now)
+    return [*told, left, PAUSES_COUNT] if MORE in left else [*told, left, PAUSES_COUNT, MORE]
+
+
+def planned_until_words(times: Sequence[SessionTime]) -> str:
+    """Tell until when the sessions of a report were planned; "" if none had a limit."""
+    ends = [f"{one.ends.astimezone():%H:%M}" for one in times if one.ends is not None]
+    return f"planned until {', then '.join(ends)}" if ends else ""
