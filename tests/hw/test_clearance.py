@@ -162,6 +162,23 @@ class TestPeople:
         assert LIMITS.people_speed < seen.forward < 0.5  # it stops before they turn round and come
         assert past(Twist(0.5, 0.2), replace(behind, pace=0.0)) == Twist(0.5, 0.2)
 
+    @pytest.mark.parametrize("forward", [-0.1, 0.05, 0.0])
+    def test_a_walker_hidden_behind_the_robot_makes_no_slow_command_faster(
+        self, forward: float
+    ) -> None:
+        behind = replace(person(-2.5, 0.2, 0.3), hidden=True)
+        assert past(Twist(forward, 0.2), behind) == Twist(forward, 0.2)
+
+    @pytest.mark.parametrize(("x", "y"), [(2.8, 0.2), (-3.1, 0.2)])
+    def test_a_hidden_walker_ahead_or_far_away_does_not_slow_the_robot_down(
+        self, x: float, y: float
+    ) -> None:
+        assert past(Twist(0.5, 0.2), replace(person(x, y, 0.4), hidden=True)) == Twist(0.5, 0.2)
+
+    def test_a_round_robot_turns_on_the_spot_beside_a_walker(self) -> None:
+        beside = person(0.0, 0.45, 0.0, -0.5)
+        assert past(Twist(0.01, 1.0), beside) == Twist(0.01, 1.0)
+
     def test_the_robot_slows_down_more_for_a_new_track(self) -> None:
         known, new = (past(Twist(0.5, 0.0), person(1.2, 0.3, age=a)).forward for a in (3.0, 0.3))
         assert new < known
