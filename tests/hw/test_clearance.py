@@ -11,7 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import STILL, Pose, Twist
-from tangy_hw.navigation.clearance import REACH, limit_by_clearance, room_ahead, speed_in
+from tangy_hw.navigation.clearance import (
+    REACH,
+    free_ahead,
+    limit_by_clearance,
+    room_ahead,
+    speed_in,
+)
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import Track
@@ -47,6 +53,18 @@ class TestRoom:
             2.0 - LIMITS.radius - LIMITS.clearance, abs=0.03
         )
         assert room_ahead(at((-0.6, 0.1)), 0.0, LIMITS) == inf
+
+    @pytest.mark.parametrize("side", [1.0, -1.0])
+    def test_the_way_on_an_arc_ends_at_a_point_on_it_and_not_beside_it(self, side: float) -> None:
+        on = at((1.0, side), (2.0, 0.0), (-1.0, side))  # a quarter of a circle of 1 m is pi/2 long
+        assert free_ahead(on, side, 0.3) == pytest.approx(pi / 2 - 0.3)
+        assert free_ahead(on[1:], side, 0.3) == free_ahead(on[:1], -side, 0.3) == inf
+
+    @pytest.mark.parametrize("room", [0.05, 0.4, REACH])
+    def test_the_robot_can_stop_within_the_room_from_the_speed_for_it(self, room: float) -> None:
+        way = speed_in(room, LIMITS) ** 2 / (2 * LIMITS.planned_braking)
+        assert way == pytest.approx(room) and speed_in(-room, LIMITS) == 0.0
+        assert speed_in(room + REACH, LIMITS) == speed_in(REACH, LIMITS)
 
     @given(st.floats(0.05, 0.25), st.floats(-pi, pi), st.floats(-2, 2))
     def test_a_touched_object_stops_only_driving_towards_it(
@@ -230,6 +248,7 @@ class TestByHand:
         turned = by_hand(Twist(0.0, 1.0), *around)
         assert turned == Twist(0.0, LIMITS.close_turn)
         assert by_hand(Twist(0.3, 1.0), *around) == turned
+        assert by_hand(Twist(0.0, 1.0), (2.0, 0.0)) == Twist(0.0, 1.0)
 
     def test_a_drive_backwards_is_slow_and_stops_at_seen_objects(self) -> None:
         assert by_hand(Twist(-0.5, 0.0)) == Twist(-LIMITS.unseen_speed, 0.0)
