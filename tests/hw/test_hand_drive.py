@@ -163,6 +163,24 @@ class TestClamp:
         await soon(wheels.sent)
         assert parts.told == [*told, Twist(0.2, 0.0)]
 
+    async def test_a_stop_drops_the_command_that_is_on_its_way(self) -> None:
+        parts, way = ToldBody(), asyncio.Event()
+
+        async def drive(twist: Twist) -> None:
+            await way.wait()
+            parts.told.append(twist)
+
+        wheels = Wheels(parts.base, LIMITS)
+        with patch.object(parts.base, "drive", drive):
+            for command in (Twist(0.3, 0.0), Twist(0.2, 0.0), STILL):
+                wheels.send(command)
+                await asyncio.sleep(0)
+        way.set()
+        assert wheels.sent is not None
+        await soon(wheels.sent)
+        await asyncio.sleep(0)
+        assert parts.told == ["stop"] and wheels.stand
+
     @pytest.mark.slow
     @given(TWISTS, TWISTS, st.sampled_from(["line", "hand", "navigator", "both"]))
     async def test_no_source_of_commands_exceeds_the_maximum_speed(

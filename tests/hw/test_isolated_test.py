@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 from tangy_hw.device_protocols import DeviceError
+from tangy_hw.drivers.camera_source import CameraSource
 from tangy_hw.robot_process.isolated_test import try_robot_apart
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import Robot, load_robot
 
 DRIVERS = Path(__file__).with_name("blocking_drivers.py")
+TOLD = """
+import json, sys
+asked = sys.stdin.readline()
+print(json.dumps({"calls": "gripper", "step": "start"}), flush=True)
+if not json.loads(asked)["failed"]:
+    sys.exit(7)
+print(json.dumps({"found": [{"device": "gripper", "ok": True, "text": asked}]}), flush=True)
+"""
 GRIPPER = """
 [[devices]]
 name = "gripper"
@@ -62,3 +73,20 @@ def test_a_driver_that_blocks_is_named_and_the_others_are_tried(
 def test_a_process_that_cannot_start_is_told() -> None:
     with pytest.raises(DeviceError, match="could not be tried: no process can be started"):
         try_robot_apart(load_robot(), load_activity("bingo"), {}, command=("/no/such/program",))
+
+
+def test_the_process_is_told_what_to_try_and_which_driver_failed() -> None:
+    source = CameraSource("head_camera", "stream", "http://10.0.0.7/")
+    (found,) = try_robot_apart(
+        load_robot(),
+        load_activity("trivia"),
+        {"head_camera": source},
+        0.3,
+        pairing={"chest": "secret"},
+        command=(sys.executable, "-S", "-c", TOLD),
+    )
+    told = json.loads(found.text)
+    assert told["robot"] == str(load_robot().file) and "trivia" in told["activity"]
+    assert told["cameras"] == {"head_camera": asdict(source)} and told["seconds"] == 0.3
+    assert told["pairing"] == {"chest": "secret"}
+    assert told["failed"]["gripper"].endswith("ended the process that tried it (status 7).")
