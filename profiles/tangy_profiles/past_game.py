@@ -23,7 +23,7 @@ from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import FRONT, ActivityState, Outcome, UserState
 from tangy_profiles.store import Event, Store
 from tangy_profiles.tracker import Tracker
-from tangy_profiles.unfinished import late_requests, unmade_moves
+from tangy_profiles.unfinished import late_requests, unchecked_claims, unmade_moves
 
 
 class OpenRequests:
@@ -122,6 +122,8 @@ class PastGame:
     """Whose card was known in this game."""
     unmade: tuple[GameChange, ...] = ()
     """Who left or came by the word of staff, so late that the game had not changed yet."""
+    claims: tuple[tuple[int, str], ...] = ()
+    """The claims that were made and not checked yet: each card, and the person ("": unknown)."""
     came: tuple[tuple[str, int], ...] = ()
     """The new people who came, in order, each with the place (from 0) that staff gave them."""
 
@@ -342,6 +344,7 @@ def interrupted_game(store: Store, activity: str) -> PastGame | None:
         acted=acted,
         asked_for=late_requests(acts, last),
         cards=KnownCards.of(notes),
+        claims=unchecked_claims(notes),
         unmade=unmade_moves(newest.record, notes, changes, len(own)),
         came=tuple(
             (note.person, note.seat - 1) for note in notes if note.did == "came" and note.seat

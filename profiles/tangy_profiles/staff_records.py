@@ -25,6 +25,7 @@ StaffActionKind = Literal[
     "pace",
     "time planned",
     "took back",
+    "claim made",
     "claim right",
     "claim late",
     "claim wrong",
@@ -45,6 +46,10 @@ StaffActionKind = Literal[
     "noted",
 ]
 """What staff, or the program beside its behaviours, did in a game."""
+
+
+CLAIM_CHECKS: tuple[StaffActionKind, ...] = ("claim right", "claim late", "claim wrong")
+"""The results of a claim that was checked."""
 
 
 BEGINNINGS: dict[str, StaffActionKind] = {
@@ -75,7 +80,8 @@ class StaffAction(EventRecord):
     words that a person said, the seconds of a freeze, the behaviour that staff chose
     after they took over, or a note in words. `seconds` is the time in
     the game, `taken_back` the number of a call that no longer counts, and `seat` (from 1) the seat
-    of a new person who came.
+    of a new person who came. `calls` is how many numbers Tangy had called when a claim was made or
+    checked, with the one it was just saying; 0: none, or an older log.
     """
 
     game: str
@@ -86,3 +92,4 @@ class StaffAction(EventRecord):
     seconds: float | None = None
     taken_back: Sparse[Count] = 0
     seat: Sparse[Count] = 0
+    calls: Sparse[Count] = 0

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from tangy_profiles.game_records import GameBeginning, GameChange, GameStep
-from tangy_profiles.staff_records import StaffAction
+from tangy_profiles.staff_records import CLAIM_CHECKS, StaffAction
 from tangy_profiles.store import Event
+
+
+def unchecked_claims(notes: Iterable[StaffAction]) -> tuple[tuple[int, str], ...]:
+    """Return the claims that were made and not checked: each card, and the person ("": unknown)."""
+    claims = dict[int, str]()
+    for note in notes:
+        card = int(note.detail) if note.detail.isdecimal() else 0
+        if note.did == "claim made" and card:
+            claims[card] = note.person or claims.get(card, "")
+        elif note.did in CLAIM_CHECKS:
+            claims.pop(card, None)
+    return tuple(claims.items())
 
 
 def unmade_moves(

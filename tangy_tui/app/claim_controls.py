@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -12,7 +12,7 @@ from tangy_tui.app.game_commands import ClaimCard
 from tangy_tui.app.staff_notes import StaffNote
 
 if TYPE_CHECKING:
-    from tangy_tui.monitoring.supervision import Supervision
+    from tangy_tui.monitoring.supervision import Event, Supervision
 
 ClaimKind = Literal["claim right", "claim late", "claim wrong"]
 CLAIM_SECONDS, LONGEST_CLAIM = 15.0, 60.0
@@ -34,6 +34,8 @@ class ClaimNow:
     """How many numbers were called by then."""
     game: str = ""
     """The id of the game."""
+    resumed: bool = False
+    """Whether it waits since before an interruption, until staff let the game go on."""
     goes: bool = False
     """Whether Tangy goes to the person because of it; not yet while it finishes its step."""
 
@@ -47,6 +49,10 @@ class ClaimControls:
         self._note = note
         self._by = by
         self._claimed: ClaimNow | None = None
+        self._unchecked: list[ClaimCard] = []
+        """The claims that were made before an interruption, and are still to be checked."""
+        self._late: list[StaffNote] = []
+        """The results of these, until staff are told."""
 
     @property
     def world(self) -> PlannedGame | None:
@@ -63,10 +69,49 @@ class ClaimControls:
         world = self.world
         return "" if world is None else "".join(map(world.activity.deck.label, world.calling))
 
+    @property
+    def _calls(self) -> int:
+        """How many numbers were called, with the one that Tangy is just saying."""
+        return 0 if self.world is None else len(self.world.called_now) + len(self.world.calling)
+
+    def take_up(self, claims: Iterable[tuple[int, str]]) -> None:
+        """Keep the claims of an interrupted game, to check them when it goes on."""
+        self._unchecked, self._late = [], []
+        for card, person in claims:
+            claim = ClaimCard(card, person)
+            if (judged := self.judged(claim)) is not None:
+                self._claimed = replace(judged, resumed=True)
+            self._unchecked.append(claim)
+
+    def check_left(self) -> list[Event]:
+        """Check the claims that were made before an interruption; see `late_notes`."""
+        told: list[Event] = []
+        world = self.world
+        while world is not None and self._unchecked:
+            for one in self._claim(world, self._unchecked.pop(0)):
+                if isinstance(one, StaffNote):
+                    self._late.append(one)
+                else:
+                    told.append(one)
+        return told
+
+    def late_notes(self) -> list[StaffNote]:
+        """Return the results of claims from before an interruption, each once."""
+        told, self._late = self._late, []
+        return told
+
+    def kept(self, claim: ClaimCard) -> bool:
+        """Return whether a claim was logged, and is still to be checked."""
+        claimed, claim = self._claimed, self.with_card(claim)
+        return claimed is not None and claimed.told is None and claimed.card == claim.card
+
     def _claim_early(self, claim: ClaimCard) -> None:
-        """Judge a claim at once; the group is told later."""
+        """Judge and log a claim at once; it is checked, and the group told, in its turn."""
         if (judged := self.judged(claim)) is not None:
             self._claimed = judged
+            self._note(
+                "claim made", person=judged.person, detail=str(judged.card), calls=self._calls
+            )
 
     def _forget_claim(self, claim: ClaimCard) -> None:
         """Forget a claim that was judged early, and refused in its turn."""
@@ -158,6 +203,7 @@ class ClaimControls:
         if (refused := self._no_card(claim)) is not None:
             return [refused]
         card, person = claim.card, claim.person
+        self._unchecked = [one for one in self._unchecked if one.card != card]
         rules, present = world.activity.rules, world.patterns.present
         pattern = present or next(iter(rules.patterns), None)
         holder = person or world.holder(card)
@@ -165,7 +211,7 @@ class ClaimControls:
         words = {"claim right": rules.claim_right, "claim late": rules.claim_late}.get(
             kind, rules.claim_wrong
         )
-        self._note(kind, person=holder or "", detail=str(card))
+        self._note(kind, person=holder or "", detail=str(card), calls=self._calls)
         self._claimed = claimed = ClaimNow(
             card, holder, kind, world.seconds, len(world.called_now), self._supervision.game.game
         )

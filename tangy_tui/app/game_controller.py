@@ -30,7 +30,6 @@ from tangy_tui.app.game_commands import (
     CallExpert,
     ClaimCard,
     Clear,
-    ComesIn,
     Confirm,
     Drive,
     EndGame,
@@ -180,6 +179,7 @@ class GameController(HandingOver):
             if stopped and not joined:  # before there was a game to log it in
                 self.note("stopped", by=self.stopped_by)
             world = self.supervision.world
+            self.plan.take_up(() if past is None else past.claims)
             if past is None:
                 self._watch.begin(world.seconds)
             else:
@@ -198,6 +198,8 @@ class GameController(HandingOver):
             waits = self.stopped or self._holds or not self.going or game.halted is not None
             if waits or game.question is not None or self.proposal is not None:
                 return game.look()
+            if left := self.plan.check_left():
+                return left
             if self.taking_over and not game.waiting:
                 return self._ask_next()
             if not (self._may_step() and self.awake()):
@@ -292,7 +294,7 @@ class GameController(HandingOver):
     def _dispatch(self, command: GameCommand) -> list[Result]:
         too = self.joined and isinstance(command, Joins)
         if self.supervision.over and not too and not isinstance(command, WITHOUT_GAME):
-            return [StaffNote("joining" if self.joined else "no game")]
+            return [self._without_game(command)]
         if self._stands_at_end and not isinstance(command, StopRobot | EndGame):
             return [StaffNote("ends")]
         if isinstance(command, ClaimCard) and self.plan.refuses(command) is None:
@@ -334,21 +336,6 @@ class GameController(HandingOver):
                 return self._end()
             case forgotten:
                 assert_never(forgotten)
-
-    def _let_in(self, command: Joins) -> list[Result]:
-        """Let a new person join; if the name is that of somebody who was away, they are back."""
-        told = self._let_join(command)
-        match told:
-            case [StaffNote(kind="known already", about=person)]:
-                pass
-            case [StaffNote(kind="which person", people=(person,))]:  # a first name
-                pass
-            case _:
-                return told
-        if self.joined or command.seat or command.table:
-            return told
-        back = self.plan.do(ComesIn(person))
-        return back if back == [StaffNote("comes", person)] else told
 
     def note(self, did: StaffActionKind, *, by: str = "", **what: Any) -> None:
         """Log what staff did (see `Supervision.note`), unless the log is full."""

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 from tangy_hw.device_protocols import DeviceError
 from tangy_tui.app.ending_games import EndingGames
 from tangy_tui.app.fault_commands import Result
-from tangy_tui.app.game_commands import Joins
+from tangy_tui.app.game_commands import ClaimCard, ComesIn, GameCommand, Joins
 from tangy_tui.app.staff_notes import StaffNote
 
 if TYPE_CHECKING:
     from tangy_profiles.past_game import PastGame
     from tangy_tui.app.joining import Admission
+    from tangy_tui.app.plan_controls import GamePlanControls
 
 
 class JoiningGames(EndingGames):
@@ -26,6 +27,7 @@ class JoiningGames(EndingGames):
 
     stopped_by: str
     past: PastGame | None
+    plan: GamePlanControls
 
     admission: Admission | None = None
     """Adds people to the participants; None: nobody can join."""
@@ -47,6 +49,27 @@ class JoiningGames(EndingGames):
     def after_joining(self) -> bool:
         """Whether the game to resume was interrupted only because a person joined."""
         return self._interrupted_at is not None
+
+    def _let_in(self, command: Joins) -> list[Result]:
+        """Let a new person join; if the name is that of somebody who was away, they are back."""
+        told = self._let_join(command)
+        match told:
+            case [StaffNote(kind="known already", about=person)]:
+                pass
+            case [StaffNote(kind="which person", people=(person,))]:  # a first name
+                pass
+            case _:
+                return told
+        if self.joined or command.seat or command.table:
+            return told
+        back = self.plan.do(ComesIn(person))
+        return back if back == [StaffNote("comes", person)] else told
+
+    def _without_game(self, command: GameCommand) -> StaffNote:
+        """Return why a command is not carried out while no game runs, or what becomes of it."""
+        if self.joined and isinstance(command, ClaimCard) and self.plan.kept(command):
+            return StaffNote("claim kept", str(self.plan.with_card(command).card))
+        return StaffNote("joining" if self.joined else "no game")
 
     def _let_join(self, command: Joins) -> list[Result]:
         """Send the robot to the front, let a person in, and interrupt the game."""

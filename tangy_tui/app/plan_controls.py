@@ -39,6 +39,8 @@ class GamePlanControls(ClaimControls):
         super().__init__(supervision, note, by)
         self._said: list[ComesIn | GoesAway] = []
         """Who staff said has come or left, until it takes effect after the present step."""
+        self._early: dict[int, GameCommand] = {}
+        """The commands that were logged early, and wait for their turn, by identity."""
 
     def do(self, command: PlanCommand) -> list[Result]:
         """Carry out a command.
@@ -83,10 +85,14 @@ class GamePlanControls(ClaimControls):
         return "" if world is None or number is None else world.activity.deck.label(number)
 
     def say_early(self, command: GameCommand) -> None:
-        """Log who comes or leaves at once, unless that is refused; the game changes later.
+        """Log who comes or leaves, and claims, at once, unless that is refused.
 
-        A claim is judged at once; the group is told later.
+        The game changes later; a claim is judged at once, and the group is told later. It may be
+        called again for the same command.
         """
+        if id(command) in self._early:
+            return
+        self._early[id(command)] = command
         if isinstance(command, ClaimCard):
             self._claim_early(command)
         if self._idle or not isinstance(command, ComesIn | GoesAway):
@@ -97,6 +103,7 @@ class GamePlanControls(ClaimControls):
 
     def forget_early(self, command: GameCommand) -> None:
         """Forget what was logged early, once its command was carried out or failed."""
+        self._early.pop(id(command), None)
         if isinstance(command, ClaimCard):
             self._forget_claim(command)
         if isinstance(command, ComesIn | GoesAway) and command in self._said:

@@ -17,6 +17,7 @@ DoneKind = Literal[
     "call taken back",
     "pace",
     "time planned",
+    "claim kept",
     "claim right",
     "claim late",
     "claim wrong",

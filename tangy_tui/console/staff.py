@@ -213,7 +213,7 @@ class StaffLines:
             except TangyError as error:  # logging failed, so pause
                 self._telling.tell([*controller.apply(Pause()), StaffNote("cannot", str(error))])
                 continue
-            self._telling.tell(events)
+            self._telling.tell([*controller.plan.late_notes(), *events])
             self._questions.prompt(self._typed)
             busy = self._tasks.unfinished_tasks
             if self._ahead.ended and not busy and controller.waits:
@@ -329,6 +329,7 @@ class StaffLines:
             return
         if isinstance(command, EndGame):
             self._controller.break_off()
+        self._controller.plan.say_early(command)
         self._tasks.put(lambda: self._telling.in_turn(command))
 
     def _take(self, text: str) -> None:

@@ -169,20 +169,20 @@ def _staff(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
     for moment in replay.moments:
         when = {"step": moment.step, "at": moment.at, "seconds": moment.seconds}
         match moment.what:
-            case Noted(did, by, person, detail):
+            case Noted(did, by, person, detail, calls=calls):
                 yield {
                     **when, "kind": "note", "fault": None, "what": did, "person": person or None,
-                    "detail": detail or None, "by_person": bool(by),
+                    "detail": detail or None, "calls": calls or None, "by_person": bool(by),
                 }  # fmt: skip
             case Unclear(person):
                 yield {
                     **when, "kind": "unclear", "fault": None, "what": "answer not clear",
-                    "person": person or None, "detail": None, "by_person": False,
+                    "person": person or None, "detail": None, "calls": None, "by_person": False,
                 }  # fmt: skip
             case Moved(fault=fault, move=move) if move.by:
                 yield {
                     **when, "kind": "move", "fault": fault.id, "what": move.kind, "person": None,
-                    "detail": None, "by_person": True,
+                    "detail": None, "calls": None, "by_person": True,
                 }  # fmt: skip
 
 
@@ -219,7 +219,7 @@ TABLES = (
         _faults,
     ),
     DataTable("staff", (*HEAD, "step", "at", "seconds", "kind", "fault", "what", "person", "detail",
-         "by_person"),
+         "calls", "by_person"),
               _staff),
 )  # fmt: skip
 """The tables; `docs/data-dictionary.md` describes their columns."""

@@ -62,6 +62,8 @@ class Noted:
     detail: str = ""
     taken_back: int = 0
     """The number of a call that no longer counts; 0: none."""
+    calls: int = 0
+    """How many numbers were called when a claim was made or checked; 0: not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,9 +124,10 @@ class Moment:
                 }
             case Diagnosed(fault):
                 return {"kind": "fault", **fault.document()}
-            case Noted(did, by, person, detail):
+            case Noted(did, by, person, detail, calls=calls):
                 return {
                     "kind": "staff", "what": did, "person": person, "detail": detail, "by": by,
+                    **({"calls": calls} if calls else {}),
                 }  # fmt: skip
             case Moved(fault, move):
                 return {"kind": "recovery", "fault": fault.id, "move": encode(move)}
@@ -314,7 +317,11 @@ def _replay(
                 # while a step was carried out that comes later
                 acted = max(acted, action.seconds or 0.0)
                 pauses.did(action.did, max(acted, replay.seconds))
-                what = Noted(action.did, action.by, action.person, action.detail, action.taken_back)
+                what = Noted(
+                    *(action.did, action.by, action.person, action.detail),
+                    taken_back=action.taken_back,
+                    calls=action.calls,
+                )
             case CallMade() as what:
                 pass
             case AnswerNotClear(asked_again=asked_again, source=source):

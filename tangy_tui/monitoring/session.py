@@ -13,6 +13,7 @@ from tangy_profiles.staff_records import StaffActionKind
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.interaction.tally import TallyRow
+from tangy_tui.monitoring.claims import claims_in
 from tangy_tui.monitoring.fault import BORNE, OPEN, Diagnosed, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
@@ -192,6 +193,7 @@ class Session:
                     "set_ups": r.set_ups.to_json(),
                     "interruptions": interruptions(r).to_json(),
                     "played_for": [one.to_json() for one in played_for(r)],
+                    "claims": [one.to_json() for one in claims_in(r)],
                 }
                 for r in self.replays
             ],

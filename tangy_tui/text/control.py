@@ -140,6 +140,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return planned_words(about, noted.words)
         case "not in a simulation":
             return SIMULATED_TIME
+        case "claim kept":
+            return f"Card {about}: Tangy checks it as soon as the game goes on."
         case "claim right":
             return f"{_whose_card(noted, name)} wins. Tangy tells everybody: {noted.words}"
         case "claim late":
@@ -320,6 +322,8 @@ def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = 
             done = f"{card} does not win yet."
         case forgotten:
             assert_never(forgotten)
+    if claimed.resumed and not told:
+        return f"{done} Tangy tells everybody as soon as the game goes on."
     return done if told else f"{done} Tangy finishes this, then tells everybody."
 
 

@@ -21,10 +21,11 @@ from tangy_tui.monitoring.attention import (
     visiting,
     waiting_at_calls_first,
 )
+from tangy_tui.monitoring.claims import claims_in
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
 from tangy_tui.monitoring.presence import stays
-from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment, Noted
+from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.fault_moves import move_words
@@ -307,16 +308,17 @@ def _left_words(replay: GameReplay, won: Moment, change: GameChange, name: Name)
     there = stays([replay]).get(change.person, ())
     if not there or any(stay.at(datetime.fromisoformat(won.at)) for stay in there):
         return ""
-    who, checked = name(change.person), ""
-    for moment in replay.moments:
-        if moment is won:
-            break
-        match moment.what:
-            case Noted(did="claim right", person=person, detail=card) if person == change.person:
-                checked = f" Staff had {who}'s card {card} checked."
-            case _:
-                pass
-    return f" {who} had left before.{checked}"
+    who = name(change.person)
+    for claim in reversed(claims_in(replay)):
+        if claim.person != change.person or claim.result != "claim right":
+            continue
+        if claim.checked_at > won.at:
+            continue
+        if any(stay.at(datetime.fromisoformat(claim.at)) for stay in there):
+            made = time_of_day(claim.at)
+            return f" {who} left after the claim with card {claim.card} at {made}."
+        return f" {who} had left before. Staff had {who}'s card {claim.card} checked."
+    return f" {who} had left before."
 
 
 def fault_outcome(fault: Fault, status: str) -> str:

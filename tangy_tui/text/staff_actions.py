@@ -97,6 +97,8 @@ def did_words(noted: Noted, name: Name) -> str:
             return f"planned to play {_until_words(detail)}"
         case "took back":
             return f"took a call back: {detail}"
+        case "claim made":
+            return f"asked Tangy to check {card_words(detail, person)}{at_call(noted.calls)}"
         case "claim right":
             return f"had {card_words(detail, person)} checked: it wins"
         case "claim late":
@@ -172,6 +174,9 @@ def action_words(noted: Noted, name: Name) -> str:
             return f"the session was planned {_until_words(detail)}"
         case "took back":
             return f"a call was taken back: {detail}"
+        case "claim made":
+            card = card_words(detail, person)
+            return f"Tangy was asked to check {card}{at_call(noted.calls)}"
         case "claim right":
             return f"{card_words(detail, person)} was checked: it wins"
         case "claim late":
@@ -227,6 +232,11 @@ def _autonomy_words(level: str) -> str:
 def card_words(number: str, person: str) -> str:
     """Name a card by its number and the person who has it; the person may be unknown."""
     return f"{person}'s card {number}" if person else f"card {number}"
+
+
+def at_call(calls: int) -> str:
+    """Tell at which call something was; "" if it is not known."""
+    return f" at call {calls}" if calls else ""
 
 
 def _named(words: str, name: Name) -> str:

@@ -10,13 +10,18 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.contacts import EXPERT
 from tangy_profiles.game_records import CallMade, MoveKind
 from tangy_profiles.game_world import SIMULATED
+from tangy_profiles.staff_records import CLAIM_CHECKS
+from tangy_tui.app.card_news import BY as TANGY
+from tangy_tui.monitoring.claims import Claim, claims_in
 from tangy_tui.monitoring.done import Done
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.replay import GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import Session
 from tangy_tui.text.situations import Name
 from tangy_tui.text.staff_actions import (
+    at_call,
     by_staff,
+    card_words,
     chosen_words,
     did_words,
     with_behaviour,
@@ -26,6 +31,8 @@ from tangy_tui.text.times import time_of_day
 STAFF = "What staff did"
 STAFF_COLUMNS = ("when", "who", "what")
 NO_STAFF = "Staff did not step in."
+LATE_CHECK = 5.0
+"""The report tells when a claim was checked if that was so much later (s)."""
 LONGEST_STEP = 3600.0
 """No behaviour takes longer, in s."""
 STAFF_MOVES: Mapping[MoveKind, str] = {
@@ -67,7 +74,10 @@ class _Act(NamedTuple):
 
 
 def _done_by_staff(replay: GameReplay, name: Name) -> Iterator[_Act]:
-    """Yield what staff did in a game."""
+    """Yield what staff did in a game; a claim counts when it was made, with what came of it."""
+    for claim in claims_in(replay):
+        if claim.by and claim.by != TANGY:
+            yield _Act(datetime.fromisoformat(claim.at), claim.by, claim_words(claim, name))
     calls = (moment.what for moment in replay.moments)
     called = {call.fault for call in calls if isinstance(call, CallMade) and call.role == EXPERT}
     answered = ("", "")  # the answer that the next behaviour carries out, and for whom
@@ -103,6 +113,8 @@ def _staff_words(
     """Return who of the staff did what; `called` are the faults with a call to the expert."""
     what = moment.what
     if isinstance(what, Noted):
+        if what.did in ("claim made", *CLAIM_CHECKS):
+            return None  # told as one claim
         return (
             (what.by, did_words(with_behaviour(what, activity), name)) if by_staff(what) else None
         )
@@ -114,6 +126,24 @@ def _staff_words(
     if move.answer:
         return move.by, chosen_words(activity, move.answer, move.target, name)
     return move.by, f"{STAFF_MOVES[move.kind]}: {fault.name}"
+
+
+def claim_words(claim: Claim, name: Name) -> str:
+    """Tell whose card staff had checked, at which call, and what came of it."""
+    card = card_words(claim.card, name(claim.person) if claim.person else "")
+    when = at_call(claim.calls)
+    match claim.result:
+        case "claim right":
+            told = f"had {card} checked{when}: it wins"
+        case "claim late":
+            told = f"had {card} checked{when}: it wins, too, but another card was first"
+        case "claim wrong":
+            told = f"had {card} checked{when}: it does not win yet"
+        case _:
+            return f"asked Tangy to check {card}{when}; it was not checked"
+    made, checked = map(datetime.fromisoformat, (claim.at, claim.checked_at))
+    late = (checked - made).total_seconds() >= LATE_CHECK
+    return f"{told} (Tangy checked it at {time_of_day(claim.checked_at)})" if late else told
 
 
 def staff_action_lines(session: Session) -> Iterator[str]:

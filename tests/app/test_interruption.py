@@ -205,7 +205,12 @@ class Robot:
     """A live game over a fake link."""
 
     def __init__(
-        self, workspace: Workspace, past: PastGame | None = None, on_for: float = 0.0
+        self,
+        workspace: Workspace,
+        past: PastGame | None = None,
+        on_for: float = 0.0,
+        *,
+        begins: bool = True,
     ) -> None:
         policy, _ = load_policy(workspace.store, workspace.activity)
         self.workspace = workspace
@@ -214,7 +219,8 @@ class Robot:
         self.world = live_world(workspace, self.link, seed=SEED, pace=0.0)
         supervision = workspace.supervision(policy, SEED, asks=True, world=self.world)
         self.control = GameController(supervision, "Ada", robot=self.world, past=past)
-        self.control.begin()
+        if begins:
+            self.control.begin()
 
     def next(self, times: int) -> None:
         for _ in range(times):

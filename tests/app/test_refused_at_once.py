@@ -80,8 +80,9 @@ def test_a_card_that_staff_name_is_known_before_a_visit_and_names_its_owner(taug
     assert isinstance(wrong, StaffNote)
     assert (wrong.kind, wrong.about, wrong.people) == ("claim wrong", "17", ("user2",))
     noted = [(e.record.did, e.record.person) for e in workspace.store.events(StaffAction)]
-    assert noted[-3:] == [
-        ("card given", "user1"), ("card given", "user2"), ("claim wrong", "user2")
+    assert noted[-4:] == [
+        ("card given", "user1"), ("card given", "user2"),
+        ("claim made", "user2"), ("claim wrong", "user2"),
     ]  # fmt: skip
     assert control.apply(HasCard("user9", 3)) == [StaffNote("not playing", "user9")]
     assert control.apply(HasCard("user1", 10**5)) == [StaffNote("no such card", "100000")]

@@ -272,7 +272,7 @@ class PlayScreen(PlayStaff):
             events, rest = await self._beside(self.control.next), list[Event]()
             if not self.skipping and control.going:
                 events, rest = self._faults.staged.parts(events)
-            self._tell(events)
+            self._take([*control.plan.late_notes(), *events])
             if control.proposal is not None:
                 await self._propose(control.proposal)
             if supervision.question is not None:
