@@ -78,9 +78,10 @@ class StaffWatch:
         self._visited: dict[str, float] = {}
 
     def begin(self, now: float) -> None:
-        """Start the clock of a game at a time in s."""
+        """Start the clock of a game at a time in s; who still waits has waited since they asked."""
+        waits = {person: since for person, since in self._asks.items() if since <= now}
         self._clear()
-        self._began = now
+        self._began, self._asks = now, waits
 
     def end(self, now: float) -> None:
         """Stop the clock at a time in s: the game is over. Later calls change nothing."""
@@ -115,7 +116,8 @@ class StaffWatch:
 
     def _look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
         now = now if self._ended is None else min(now, self._ended)
-        for person in [one for one in self._asks if one not in scene.requests]:
+        over = self._ended is not None  # then nobody counts as asking, also who still waits
+        for person in [one for one in self._asks if one not in scene.requests and not over]:
             del self._asks[person]
         for person in scene.requests:
             self._asks.setdefault(person, now)
@@ -136,7 +138,8 @@ class StaffWatch:
         )
 
     def _person(self, person: str, scene: Scene, now: float, robot: tuple[str, str]) -> PersonNow:
-        asks, visited = self._asks.get(person), self._visited.get(person)
+        asks = self._asks.get(person) if person in scene.requests else None
+        visited = self._visited.get(person)
         state: PersonState = "asks" if person in scene.requests else "plays"
         if person in scene.away:
             state = "away"

@@ -115,7 +115,8 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
     typed = {type(command) for command in FIXED.values()} | {
         type(read(text)) for text in ("stop", "autonomy each", "ask for Rosa", "void Rosa",
                                       "Rosa: B", "drive left", "pace 9", "bingo 1", "play for x",
-                                      "here rosa", "left rosa", "add Berta", "Rosa has card 7")
+                                      "here rosa", "left rosa", "add Berta", "Rosa has card 7",
+                                      "plan 20 minutes")
     }  # fmt: skip
     assert typed == set(get_args(GameCommand)) - {Confirm}  # Confirm has the keys Y and N
     helped = " ".join(key for key, _ in MEANINGS)

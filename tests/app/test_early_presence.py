@@ -12,7 +12,14 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import AskFor, ClaimCard, ComesIn, GameCommand, GoesAway
+from tangy_tui.app.game_commands import (
+    AskFor,
+    ClaimCard,
+    ComesIn,
+    EndGame,
+    GameCommand,
+    GoesAway,
+)
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.in_progress import ProgressLines
@@ -191,3 +198,22 @@ def test_a_log_that_has_the_change_before_the_word_of_staff_repeats_nothing(robo
     store.append(replace(act.record, did="came"))
     past = interrupted_game(store, "bingo")
     assert past is not None and past.unmade == ()
+
+
+def test_for_whom_staff_asked_in_vain_still_waits_in_the_next_game(robot: Robot) -> None:
+    robot.next(2)
+    for person in ("user2", "user3", "user1"):
+        robot.control.apply(AskFor(person))
+    robot.control.view()
+    while robot.world.tracker.place != "user2":  # Tangy goes there
+        robot.next(1)
+    robot.link.time += 300.0
+    robot.control.apply(EndGame())
+    robot.control.apply(GoesAway("user1"))
+    robot.control.begin()
+    assert robot.world.queue == ("user3",)
+    (waits,) = [one.waits for one in robot.control.view().people if one.id == "user3"]
+    assert waits is not None and waits >= 300.0
+    robot.next(2)  # which open the game
+    robot.world.observe()
+    assert robot.world.tracker.queue == ["user3"]

@@ -45,3 +45,18 @@ def test_a_wait_and_a_visit_of_a_few_seconds_are_told_without_a_number() -> None
     just = PersonNow("ann", "asks", 1, waits=4.0, unvisited=3.0)
     assert person_words(just) == "asks, just visited"
     assert person_words(replace(just, waits=14.0, unvisited=24.0)) == "asks 10 s, visit 20 s ago"
+
+
+def test_a_wait_goes_on_in_the_next_game_while_the_person_still_asks() -> None:
+    watch = StaffWatch()
+    watch.begin(0.0)
+    asks = Scene(FRONT, ("ann", "ben"), dict.fromkeys(PEOPLE, ""), (), None)
+    watch.look(asks, PEOPLE, 10.0, object())
+    watch.end(300.0)
+    over = watch.look(replace(asks, requests=()), PEOPLE, 320.0, object())
+    assert [one.waits for one in over.people] == [None, None]
+    watch.begin(330.0)
+    view = watch.look(replace(asks, requests=("ann",)), PEOPLE, 340.0, object())
+    assert [one.waits for one in view.people] == [330.0, None]
+    later = watch.look(asks, PEOPLE, 350.0, object())
+    assert [one.waits for one in later.people] == [340.0, 0.0]

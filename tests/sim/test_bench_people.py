@@ -105,6 +105,19 @@ class TestPlaying:
             numbers = world.people.sitters[person].player.numbers
             assert numbers == numbers_of(ACTIVITY.deck, card)
 
+    def test_who_asked_in_vain_still_waits_in_the_next_game(self) -> None:
+        world = opened(3)
+        helped, left, waits, _ = people = world.people.ids
+        for person in people[:3]:
+            world.people.ask(person)
+        since = world.people.sitters[waits].asks_since
+        world.people.meet(helped)
+        world.people.away = {left}
+        world.step(30.0)
+        world.begin()
+        assert world.people.asking == (waits,)
+        assert world.people.sitters[waits].asks_since == since
+
     def test_called_numbers_are_marked_after_some_seconds_or_missed(self) -> None:
         world = opened(3)
         for number in ACTIVITY.deck.numbers[:40]:

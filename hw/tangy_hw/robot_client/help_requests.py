@@ -24,7 +24,7 @@ SignState = Literal["", "no sensor", "silent", "set aside"]
 
 
 class HelpRequestTracker:
-    """Requests of one game; times are the robot's, in s."""
+    """Requests in the games of one run; times are the robot's, in s."""
 
     def __init__(
         self, people: Sequence[str], commands: Commands, device: DeviceProfile | None = None
@@ -41,10 +41,23 @@ class HelpRequestTracker:
         self._link = commands.link
         self._device = device
         self._by_word: dict[str, float] = {}
+        self._met: set[str] = set()  # people whom the robot has visited since they asked by word
         self._without_sign: dict[str, float] = {}
         self._aside: set[str] = set()
         self._settling = ""  # whose request was just settled: the sign comes down a little later
         self._unseen: set[str] = set()  # people whose signs a sensor showed before it fell silent
+
+    def begin(self, away: Collection[str]) -> None:
+        """Begin a game: who asked by word in the one before and got no visit still waits.
+
+        Signs count as they are up, also those that were set aside.
+        """
+        gone = {*away, *self._met}
+        self._by_word = {one: at for one, at in self._by_word.items() if one not in gone}
+        self._without_sign.clear()
+        self._aside.clear()
+        self._unseen.clear()
+        self._settling = ""
 
     @property
     def signs(self) -> dict[str, float]:
@@ -89,6 +102,7 @@ class HelpRequestTracker:
     def ask_for(self, person: str) -> None:
         """Record a request for a person without a sign."""
         self._by_word[person] = self._link.time
+        self._met.discard(person)
 
     def over(self, person: str) -> None:
         """End a person's request by word."""
@@ -163,6 +177,7 @@ class HelpRequestTracker:
     def tell(self, tracker: Tracker) -> None:
         """Update a game's requests: new ones, and withdrawn ones."""
         asking, now = self.all, self._link.time
+        self._met |= {tracker.place} & self._by_word.keys()
         for person, _ in sorted(asking.items(), key=lambda item: item[1]):
             tracker.ask(person)
         for person in list(tracker.queue):

@@ -95,6 +95,9 @@ class LiveWorld(LivePlan):
         self.knows_faces = knows_faces
         self._order = Random(f"{seed}/calls")
         self._paused = (0, 0.0)  # pauses before this game
+        self.requests = HelpRequestTracker(
+            self.people, self.commands, robot.devices.get("requests")
+        )
         self._begin()
 
     def _begin(self) -> None:
@@ -102,9 +105,7 @@ class LiveWorld(LivePlan):
         self.tracker = Tracker(self.activity, self.people)
         self.calls = CallOrder(self.activity.deck.shuffled(self._order.random))
         self.cards.begin()
-        self.requests = HelpRequestTracker(
-            self.people, self.commands, self._robot.devices.get("requests")
-        )
+        self.requests.begin(self.away)
         self.sitting: dict[str, str] = {}
         """People seen at other places than their own in this game."""
         self._count_down = CountDown(lambda: self.link.time)

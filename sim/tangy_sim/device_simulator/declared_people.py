@@ -52,6 +52,8 @@ class DeclaredPeople(People):
         """Rows of the items whose picture or sound comes with the next sentence."""
         self.known = DeclaredGame(self._declaration, self.ids)
         """State of the game as the people understand it."""
+        for person in self.asking:
+            self.known.observe(ASKING, person, YES)
 
     def remember(self, memory: GameMemory) -> None:
         """Restore an interrupted game, in a room in which nobody holds up a sign."""
@@ -161,7 +163,8 @@ class DeclaredPeople(People):
         if not game.observe(act.fact, act.who, said):
             return
         if act.fact == ASKING and act.who is not None:
-            self.sitters[act.who].asks_since = self.now
+            sitter = self.sitters[act.who]
+            sitter.asks_since, sitter.visited = self.now, False
         elif letter := self._letter(fact, said):
             self.shown[act.who or ""] = letter
         else:

@@ -65,10 +65,15 @@ class People:
         rules = activity.stage_rules
         self._openers = {rule.behaviour for rule in rules if rule.condition == "before"}
         self._agenda, self.away = Agenda(), set[str]()
+        self.sitters: dict[str, Sitter] = {}
         self.begin(0.0)
 
     def begin(self, now: float) -> None:
-        """Deal new cards and begin a game at a time in s; nobody asks before it is opened."""
+        """Deal new cards and begin a game at a time in s.
+
+        Who asked in vain in the game before still waits. Nobody else asks before it is opened.
+        """
+        waits = {id: s.asks_since for id, s in self.sitters.items() if not s.visited}
         self.now = now
         self.game = GameProgress()
         self._agenda.clear()
@@ -81,6 +86,7 @@ class People:
         self.sitters = self._seat()
         for sitter in self.sitters.values():
             sitter.player.slips_at = waiting_calls(self._uniform, self.users.slip)
+            sitter.asks_since = None if sitter.id in self.away else waits.get(sitter.id)
 
     def _seat(self) -> dict[str, Sitter]:
         """Seat people, each with a new card."""
@@ -148,6 +154,7 @@ class People:
         if sitter is None:
             return
         sitter.moved += 1
+        sitter.visited = True
         hides = HIDES[int(self._moments() * len(HIDES))]
         hidden = self._uniform() < self.users.occluded
         if sitter.asks_since is not None and self._faults.concerns("card-out-of-sight", person):
@@ -254,7 +261,7 @@ class People:
 
     def _ask(self, sitter: Sitter) -> None:
         if sitter.asks_since is None and not (self.game.over or sitter.id in self.away):
-            sitter.asks_since = self.now
+            sitter.asks_since, sitter.visited = self.now, False
             if self._speak and "requests-silent" in self._faults:
                 self.game.spoken.append(sitter.id)
 

@@ -12,7 +12,8 @@ from tangy_sim.worlds.users import SimulatedUser
 class Sitter:
     """A person at the table, with a card and a sign.
 
-    `asks_since` is the time (s) at which the sign went up, None while it is down; `hides` how the
+    `asks_since` is the time (s) at which the sign went up, None while it is down; `visited` whether
+    the robot has been there since; `hides` how the
     card is out of view, "" if it is visible; `moved` how often the card was moved, `refused` how
     many requests the person refused.
     """
@@ -20,6 +21,7 @@ class Sitter:
     player: SimulatedUser
     card: int
     asks_since: float | None = None
+    visited: bool = False
     hides: str = ""
     moved: int = 0
     refused: int = 0
