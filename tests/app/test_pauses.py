@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.past_game import PastGame, interrupted_game
 from tangy_profiles.scene import Scene
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StopRobot
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.workspace import Workspace
@@ -94,6 +95,31 @@ def test_a_stop_and_single_steps_count_as_pauses(workspace: Workspace) -> None:
     assert robot.control.view().paused == pytest.approx(25.0)
     robot.control.apply(GoOn())
     assert astuple(reported(workspace).staff_pauses) == pytest.approx((2, 55.0, 1))
+
+
+@pytest.mark.parametrize(
+    ("stops", "named", "logged"),
+    [
+        (["", ""], "", ["Ada"]),
+        (["hall", ""], "hall", ["hall"]),
+        (["", "hall"], "hall", ["Ada", "hall"]),
+        (["hall", "office"], "office", ["hall", "office"]),
+    ],
+)
+def test_a_stop_is_named_by_the_last_onlooker_who_stopped_and_logged_at_each_console(
+    workspace: Workspace, stops: list[str], named: str, logged: list[str]
+) -> None:
+    robot = Robot(workspace)
+    robot.next(3)
+    for by in stops:
+        robot.control.apply(StopRobot(by))
+        assert robot.control.view().paused is not None
+    assert robot.control.stopped_by == named
+    acts = [event.record for event in workspace.store.events(StaffAction)]
+    assert [act.by for act in acts if act.did == "stopped"] == logged
+    robot.control.apply(GoOn())
+    robot.control.apply(StopRobot())
+    assert robot.control.stopped_by == ""
 
 
 def test_a_pause_that_the_log_does_not_end_lasts_until_the_next_step_after_a_resume() -> None:
