@@ -96,8 +96,7 @@ class PausingGames(JoiningGames):
 
     def _go_on(self) -> list[Result]:
         if self.stopped:
-            if self.supervision.halted is None:
-                self.robot.release()
+            self.robot.release()  # a fault that halts it has a stop of its own
             self.stopped = False
             self.note("let go on")
         elif not self.going:

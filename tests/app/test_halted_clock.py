@@ -1,4 +1,4 @@
-"""The clock of a live game in which a fault halts the robot while staff look for it."""
+"""A live game in which a fault halts the robot: its clock, and stops of staff meanwhile."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from tangy_hw.robot_process.stop_latch import StopLatch
 from tangy_profiles.health import OK, Reading
-from tangy_tui.app.game_commands import Acknowledge, Clear
+from tangy_tui.app.game_commands import Acknowledge, Clear, GoOn, StopRobot
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tests.app.test_interruption import Robot
 
@@ -37,4 +39,25 @@ def test_the_time_of_a_halt_counts_once(taught: Path) -> None:
         clock.append(robot.control.supervision.seconds)
     assert robot.control.supervision.halted is None
     assert clock == pytest.approx([robot.link.time - began - 40.0, robot.link.time - began], abs=2)
+    workspace.close()
+
+
+def test_a_robot_that_staff_let_go_on_during_a_halt_moves_once_the_fault_is_cleared(
+    taught: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace, latch = Workspace(taught), StopLatch()
+    robot = Robot(workspace)
+    monkeypatch.setattr(robot.link, "stop", lambda why, by="staff": latch.hold(why, by))
+    monkeypatch.setattr(robot.link, "release", lambda by="": latch.release(by))
+    robot.next(2)
+    report(robot, Reading("stop_button", 0.0, OK, {"latched": True}))
+    robot.next(1)
+    told = []
+    for command in (StopRobot(), GoOn(), Acknowledge()):
+        told += robot.control.apply(command)
+        assert latch.why == "emergency-stop"  # letting it go on frees it from no fault
+    assert told[:2] == [StaffNote("stopped"), StaffNote("still halted", "Emergency stop pressed")]
+    report(robot, Reading("stop_button", 0.0, OK))
+    robot.control.apply(Clear())
+    assert latch.why == "" and robot.control.phase == "running"
     workspace.close()
