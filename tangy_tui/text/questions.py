@@ -28,8 +28,8 @@ OR_DID_YOU_MEAN = "Or did you mean"
 YES_OR_NO = "yes or no"
 NUMBER_OR_NONE = "the number of one, or no: none of these"
 
-NEXT_LINE = "what should Tangy do? (or: why, help; quit lets Tangy go on by itself)"
-"""In the line of a question that staff asked for themselves."""
+LETS_GO_ON = "let Tangy go on by itself"
+"""What Esc does in the line of a question that staff asked for themselves, after the key."""
 STOPPED_FIRST = "Tangy was stopped: press {pause} to go on first, then answer."
 GIVE_UP = "Give this game up?"
 GIVE_UP_DETAIL = "The game ends here without an answer. Tangy will ask again next time."
@@ -78,6 +78,14 @@ def answer_help(question: Asked | Offered) -> list[str]:
     return lines
 
 
-def answer_line(accepts: str) -> str:
-    """Tell in the empty line of a question what can be typed; `accepts` are words that accept."""
-    return f"what should Tangy do? (or: {accepts}why, help, quit)"
+def answer_line(*, own: bool, accepts: bool) -> str:
+    """Tell in the empty line of a question what can be typed.
+
+    Args:
+        own: staff asked for the question themselves.
+        accepts: they can also say that all is well.
+    """
+    if own:
+        return "what should Tangy do? (or: why, pause, help)"
+    well = f"{ALL_RIGHT[0]}, " if accepts else ""
+    return f"what should Tangy do? (or: {well}why, help, quit)"

@@ -23,6 +23,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.text.control import WAITS_FOR_YOU
+from tangy_tui.text.keys import EMPTIES
 from tangy_tui.text.live_games import LOOKS_ROUND
 from tangy_tui.text.staff_view import TANGY_WAITS
 from tangy_tui.text.tablet import screen_words
@@ -31,6 +32,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.question_panel import AskingPanel
+from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -412,14 +414,26 @@ async def test_staff_can_choose_the_next_behaviour(run: Run, program: Program) -
 
 
 @pytest.mark.slow
-async def test_esc_returns_the_choice_to_tangy(run: Run, program: Program) -> None:
+@pytest.mark.parametrize("typed", [False, True])
+async def test_one_esc_returns_the_choice_to_tangy_and_two_with_text(
+    run: Run, program: Program, typed: bool
+) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
         await until_shown(pilot, lambda: any(one.is_open for one in live(pilot).query(AskingPanel)))
         await until_shown(pilot, lambda: live(pilot).is_active)  # not the line typed ahead
-        await pilot.press("escape")  # out of the line
         await until_shown(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
+        if typed:  # it is not understood, so it is in the line again
+            pilot.type(*"play a tune", "enter")
+            await until_shown(
+                pilot, lambda: live(pilot).query_one(CommandBar).text == "play a tune"
+            )
+            both = f"esc {EMPTIES}   esc esc let Tangy go on by itself"
+            await until_shown(pilot, lambda: both in screen_text(pilot.app))
+            await pilot.press("escape")
+            await until_shown(pilot, lambda: "esc let Tangy go on" in screen_text(pilot.app))
+            assert live(pilot).query(AskingPanel)
         steps = live(pilot).control.supervision.steps
         await pilot.press("escape")
         await until_shown(pilot, lambda: live(pilot).control.supervision.steps > steps)

@@ -39,7 +39,6 @@ from tangy_tui.learning.verification import (
 from tangy_tui.text import questions as text
 from tangy_tui.text.keys import with_keys
 from tangy_tui.text.refusals import not_understood_words, refused_words
-from tangy_tui.text.situations import ALL_RIGHT
 from tangy_tui.ui.base import Dialog, can_perform, give_keys_back, perform
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -56,7 +55,7 @@ ResultT = TypeVar("ResultT")
 
 KEYS = ("why", "command:answer", "pause", "back:give the game up")
 ACCEPTING_KEYS = ("why", "accept:all right", "command:answer", "pause", "back:give the game up")
-OWN_KEYS = ("why", "command:answer", "pause", "back:let Tangy go on by itself")
+OWN_KEYS = ("why", "command:answer", "pause", f"back:{text.LETS_GO_ON}")
 """The keys available while the line does not have the focus."""
 
 
@@ -130,7 +129,6 @@ class AskingPanel(Vertical):
 
     def compose(self) -> ComposeResult:
         """Lay out the question, what Tangy sees, and the line."""
-        other = f"{ALL_RIGHT[0]}, " if self._acceptable else ""
         yield Static(
             question_words(self._workspace, self._supervision, self._question),
             classes="asks",
@@ -145,7 +143,7 @@ class AskingPanel(Vertical):
         yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
             sayable=lambda: self._answers.sayable,
-            placeholder=text.NEXT_LINE if self.wanted else text.answer_line(other),
+            placeholder=text.answer_line(own=self.wanted, accepts=self._acceptable),
             resting=self._keys(going=True),
             closed=True,
             id="command",
@@ -157,6 +155,8 @@ class AskingPanel(Vertical):
         With push-to-talk, the screen keeps the focus.
         """
         self._had_keys = self.screen.focused
+        if self.wanted:
+            self.query_one(AnswerBar).leave_by(self.withdraw, text.LETS_GO_ON)
         self._take_keys()
         self.set_timer(SETTLE_SECONDS, self._ready)
         if self._hearing is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
@@ -194,12 +196,15 @@ class CommandBar(Vertical):
             self._matches.show(typed, (), self._texts[1])
         else:
             matches = self._complete(typed) if typed.strip() else ()
-            self._matches.show(typed, matches, self._esc if typed and not matches else "")
+            self._matches.show(typed, matches, self._esc(typed, matches))
 
-    @property
-    def _esc(self) -> str:
-        """What Esc does, where the keys in the line without the focus are the screen's foot."""
-        return f"esc {EMPTIES}" if self._letters and self._input.has_focus else ""
+    def _esc(self, typed: str, matches: tuple[str, ...]) -> str:
+        """Tell what Esc does, where the keys in the line without the focus are the screen's foot.
+
+        "": nothing, or the line above has the matches.
+        """
+        told = typed and not matches and self._letters and self._input.has_focus
+        return f"esc {EMPTIES}" if told else ""
 
     def on_command_input_entered(self, event: CommandInput.Entered) -> None:
         """Post the command."""
@@ -225,7 +230,25 @@ class CommandBar(Vertical):
 
 
 class AnswerBar(CommandBar):
-    """A command bar whose placeholder without focus changes with the game."""
+    """A command bar whose placeholder without focus changes with the game.
+
+    On its empty line, Esc can do something else than leave it.
+    """
+
+    _leaves = ""
+
+    def leave_by(self, leaves: Callable[[], object], words: str) -> None:
+        """Let Esc do something on the empty line; `words` tell it after the key."""
+        self._input.leaves, self._leaves = leaves, words
+
+    def _esc(self, typed: str, matches: tuple[str, ...]) -> str:
+        """Tell what Esc does; a single match that is typed already gives way."""
+        if not (self._leaves and self._input.has_focus):
+            return super()._esc(typed, matches)
+        if not typed:
+            return f"esc {self._leaves}"
+        twice = f"esc {EMPTIES}   esc esc {self._leaves}"
+        return twice if set(matches) <= {typed} else ""
 
     def rest(self, text: str) -> None:
         """Set the placeholder shown while the bar does not have the focus."""

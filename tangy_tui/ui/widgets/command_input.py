@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import ClassVar
 
 from textual import events
@@ -79,6 +80,8 @@ class CommandInput(Input):
         self._returned = False  # whether a command has been put back, and no key came since
         self._held = ""  # a y or n that was probably typed by reflex
         self._since = 0.0  # the time of either, in s
+        self.leaves: Callable[[], object] | None = None
+        """What Esc does on the empty line, instead of leaving it."""
 
     async def _on_key(self, event: events.Key) -> None:
         """Handle each key before the next one.
@@ -201,10 +204,12 @@ class CommandInput(Input):
         self.put(self._draft if self._at == len(self.history) else self.history[self._at])
 
     def action_leave(self) -> None:
-        """Empty the line and close the list of commands; an empty line loses the focus."""
+        """Empty the line and close the list of commands; leave an empty line."""
         if self.value or self.listed:
             self.forget_list()
             self.put("")
             self.post_message(self.Emptied())
+        elif self.leaves is not None:
+            self.leaves()
         else:
             self.screen.set_focus(None)
