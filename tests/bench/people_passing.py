@@ -62,12 +62,17 @@ def _walker(x: float, y: float, heading: float, speed: float) -> Person:
     return Person(x, y, heading, lambda one, _: one.walk(heading, speed))
 
 
-def carry_out(drive: Drive, curvature: float = 0.0, seconds: float = SECONDS) -> None:
+def carry_out(
+    drive: Drive,
+    curvature: float = 0.0,
+    seconds: float = SECONDS,
+    limits: MotionLimits | None = None,
+) -> None:
     """Drive for some s, as fast as the limits allow; `drive.touches` tells who was touched.
 
     `curvature` is that of the robot's way in 1/m, to the left.
     """
-    limits = MotionLimits()
+    limits = limits or MotionLimits()
     around, told, late = Surroundings(MAP, IDENTITY, limits), STILL, STILL
     for _ in range(round(seconds / TICK)):
         here = Estimate(drive.pose, 1e-4 * np.eye(3), 0.02, 1.0, 300)
@@ -79,12 +84,17 @@ def carry_out(drive: Drive, curvature: float = 0.0, seconds: float = SECONDS) ->
         drive.move()
 
 
-def run_meetings(meet: Callable[[int, int], tuple[Drive, float] | None], about: str | None) -> None:
+def run_meetings(
+    meet: Callable[[int, int], tuple[Drive, float] | None],
+    about: str | None,
+    limits: MotionLimits | None = None,
+) -> None:
     """Carry out the meetings of the command line, and print whom the robot touched.
 
     Args:
         meet: returns the drive and its curvature in 1/m for a number and a seed, None for none.
         about: the help of the command line.
+        limits: those of the robot; None: the usual ones.
     """
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--seed", type=int, default=0)
@@ -96,7 +106,7 @@ def run_meetings(meet: Callable[[int, int], tuple[Drive, float] | None], about: 
         if (met := meet(number, options.seed)) is None:
             continue
         drive, curvature = met
-        carry_out(drive, curvature)
+        carry_out(drive, curvature, limits=limits)
         firsts[drive.touches[0].kind if drive.touches else "none"] += 1
         for touch in drive.touches:
             if touch.kind == "ahead":

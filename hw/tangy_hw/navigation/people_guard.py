@@ -8,7 +8,9 @@ the standard, with which a robot could never drive up to a seat. Only motion tha
 nearer to a person than stopping does is limited: the robot may drive away from a person who
 approaches it. From a walker who would reach it before it stands, as they walk or if they turn
 round, it drives away slowly, and only if they stay behind it: somebody who comes from the side
-meets it before it has passed.
+meets it before it has passed. It does not drive away from a body that has just come into view: its
+velocity is not known yet, and from where the scanner does not see, a walker is beside the robot
+within the time that it needs to stand.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ SHARES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2, 0.12)  # shares of a command that
 REACH = 3.0  # metres beyond which people are out of reach while the robot stops
 STEP = 0.1  # seconds between the checked moments
 NEARER = 0.005  # metres by which driving must be worse than stopping, for standing people
+KEPT = 0.22  # metres from a standing person below which driving may not be worse at all
 FURTHER, WALKS = 0.01, 0.25  # m by which driving must be better, for walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
 FRESH = 0.5  # seconds for which a new track is assumed to approach fast
@@ -82,8 +85,10 @@ class _Bodies(NamedTuple):
     """Positions (n, 2) in m, velocities (n, 2), required separations, and speeds of approach.
 
     If both driving and stopping come too near, driving must gain `leeway` m over stopping: slightly
-    negative for standing people, positive for walkers. Walkers may also turn, and standing people
-    set off, and approach at `turned` m/s; 0 if not.
+    negative for standing people, positive for walkers. A negative one only holds beyond `kept` m:
+    else the robot would creep up to a person, command by command. Walkers may also turn, and
+    standing people set off, and approach at `turned` m/s; 0 if not. The velocity of `fresh` bodies
+    is not known yet.
     """
 
     at: Floats
@@ -92,6 +97,8 @@ class _Bodies(NamedTuple):
     approach: Floats
     leeway: Floats
     turned: Floats
+    kept: Floats
+    fresh: Floats
 
 
 def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
@@ -108,12 +115,16 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
             # a walker who turns round has no speed for a moment
             FURTHER if max(one.speed, one.pace) > WALKS else -NEARER,
             _turned(one, limits),
+            one.half + KEPT,
+            one.age < FRESH,
         )
         for one in tracks
     ]
     apart = END + limits.margin
-    rows += [(x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0) for x, y in ends]
-    table = np.array(rows, dtype=np.float64).reshape(-1, 8)
+    rows += [
+        (x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0, END + KEPT, False) for x, y in ends
+    ]
+    table = np.array(rows, dtype=np.float64).reshape(-1, 10)
     return _Bodies(table[:, :2], table[:, 2:4], *table[:, 4:].T)
 
 
@@ -141,8 +152,8 @@ def _keeps_apart(twist: Twist, bodies: _Bodies, limits: MotionLimits) -> bool:
     walking = bodies.at + times[:, None, None] * bodies.velocity
     keep = bodies.apart + bodies.approach * times[:, None]
     turn = bodies.apart + np.where(bodies.turned > 0, bodies.turned * times[:, None], -np.inf)
-    return _stays_clear(drives, walking, keep, bodies.leeway, limits) and _stays_clear(
-        drives, bodies.at[None], turn, bodies.leeway, limits
+    return _stays_clear(drives, walking, keep, bodies, limits) and _stays_clear(
+        drives, bodies.at[None], turn, bodies, limits
     )
 
 
@@ -155,7 +166,7 @@ class _Motion(NamedTuple):
 
 
 def _stays_clear(
-    drives: _Motion, people: Floats, apart: Floats, leeway: Floats, limits: MotionLimits
+    drives: _Motion, people: Floats, apart: Floats, bodies: _Bodies, limits: MotionLimits
 ) -> bool:
     """Return whether a motion keeps apart (times, n) from people (times, n, 2), or is an escape."""
     twist, robot, turned = drives
@@ -163,11 +174,16 @@ def _stays_clear(
     driving = _off(seen, turned, limits)
     standing = _off(people, np.zeros(len(people)), limits)
     near = driving < apart
-    if (near & (driving < standing + leeway)).any():
+    walk = bodies.leeway > 0.0
+    least = standing + bodies.leeway
+    least = np.where(walk, least, np.minimum(standing, np.maximum(least, bodies.kept)))
+    if (near & (driving < least)).any():
         return False
-    walkers = near & (leeway > 0.0)
+    walkers = near & walk
     if not twist.forward or not walkers.any():
         return True
+    if (walkers & (bodies.fresh > 0.0)).any():
+        return False
     front = seen if twist.forward > 0.0 else -seen
     slowly = abs(twist.forward) <= limits.people_speed
     return slowly and not (walkers & _not_behind(front, turned)).any()
