@@ -31,9 +31,26 @@ class DeviceError(TangyError):
     """A device did not execute a command, or is unavailable; one sentence that names it."""
 
 
+class DeviceFailed(DeviceError):
+    """A `device`, given by its name, cannot be switched on."""
+
+    def __init__(self, device: str, text: str) -> None:
+        super().__init__(text)
+        self.device = device
+
+
 def fails(error: Exception) -> str:
     """Return what is told about a driver that raises an error."""
     return plain(f"its driver fails: {type(error).__name__}: {error}").rstrip(".") + "."
+
+
+STARTED, ANSWERED = "started", "answered"
+"""Words for what a driver has not done in time."""
+
+
+def hangs(seconds: float, did: str = STARTED) -> str:
+    """Return what is told about a driver that has not `did` something within some s."""
+    return f"its driver has not {did} within {seconds:g} s."
 
 
 class Pose(NamedTuple):

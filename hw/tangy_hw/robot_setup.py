@@ -23,7 +23,8 @@ class RobotSetup:
     table's in its image. `faces` are the features by person, of the profile's models. `pairing`
     identifies tablets (see `drivers.chest_pairing`); without it they must pair again. `courtesies`
     are sentences for people whom the robot waits for (see `WaitExplanations`). `record` is a file
-    for the scans of a manual drive; without a map, the pose is by odometry.
+    for the scans of a manual drive; without a map, the pose is by odometry. `without` are devices
+    that are not switched on, whatever the profile names.
     """
 
     robot: str
@@ -44,6 +45,7 @@ class RobotSetup:
     pairing: Mapping[str, str] = field(default_factory=dict)
     courtesies: Mapping[str, str] = field(default_factory=dict)
     record: str = ""
+    without: tuple[str, ...] = ()
 
     def to_json(self) -> str:
         """Return it as a JSON line."""
@@ -59,6 +61,7 @@ class RobotSetup:
         try:
             body: dict[str, Any] = json.loads(line)
             body["people"] = tuple(body["people"])
+            body["without"] = tuple(body.get("without", ()))
             body["corners"] = tuple((float(x), float(y)) for x, y in body.get("corners", ()))
             start = body.get("start")
             body["start"] = None if start is None else tuple(map(float, start))

@@ -13,7 +13,8 @@ NEEDED = (LINK, "base", "laser", "localisation", "navigator")
 """Devices that every robot has: it must be reachable, drive, and know where it is."""
 
 CARDS = "cards"
-TOLD_MISSING = ("stop_button", "camera", "requests", "voice", "screen", "arms")
+STOP_BUTTON = "stop_button"
+TOLD_MISSING = (STOP_BUTTON, "camera", "requests", "voice", "screen", "arms")
 """Devices whose absence is reported to staff, in this order."""
 
 
@@ -63,6 +64,29 @@ def driven(robot: Robot, also: Collection[str] = ()) -> Robot:
     }
     left_out = [device for name, device in robot.devices.items() if name not in kept]
     return replace(robot, devices=MappingProxyType(kept), undriven=(*robot.undriven, *left_out))
+
+
+def can_be_left_out(robot: Robot, device: str) -> bool:
+    """Return whether a robot can be switched on without one of its devices.
+
+    Not without its stop button: people would press it in vain.
+    """
+    return device in robot.devices and device not in (*NEEDED, STOP_BUTTON)
+
+
+def left_out(robot: Robot, device: str) -> Robot:
+    """Return a robot without one of its devices, which is added to its `undriven`."""
+    if device not in robot.devices:
+        return robot
+    devices, drivers = dict(robot.devices), dict(robot.drivers)
+    profile = devices.pop(device)
+    drivers.pop(device, None)
+    return replace(
+        robot,
+        devices=MappingProxyType(devices),
+        drivers=MappingProxyType(drivers),
+        undriven=(*robot.undriven, profile),
+    )
 
 
 def missing_devices(robot: Robot) -> tuple[str, ...]:

@@ -295,8 +295,9 @@ def _linked(
     book: FaultBook | None,
     cancellation: Cancellation,
 ) -> Iterator[W]:
+    without = tuple(device.name for device in workspace.robot.undriven)
     link = RobotLink(
-        setup,
+        replace(setup, without=without),
         log=workspace.store.folder / LOG,
         cancellation=cancellation,
         patience=workspace.robot.liveness.fault_after,

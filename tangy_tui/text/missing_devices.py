@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.known_devices import missing_devices, reads_cards
+from tangy_profiles.known_devices import left_out, missing_devices, reads_cards
 from tangy_profiles.robot import Robot
 
 ALL_SHOWN = "This robot has no loudspeaker: Tangy shows everything on its screen."
@@ -14,6 +14,8 @@ NO_BUTTON = (
     "the game here as well."
 )
 NO_REQUESTS = "This robot does not see who asks for help: type it, as in ask for Rosa."
+STANDS_OFF = "The robot stands still, and is off."
+UNTIL_AGAIN = "If you go on, this holds until you start the program again."
 NO_ARMS = "This robot has no arms: Tangy makes no gestures."
 
 
@@ -46,6 +48,25 @@ def missing_words(robot: Robot, activity: Activity) -> list[str]:
     if activity.deck.columns and not reads_cards(robot):
         told.append(no_camera_words(activity.object))
     return told
+
+
+def go_on_without(robot: Robot, device: str) -> str:
+    """Ask whether to switch a robot on without a device that does not start."""
+    return f"Go on without the {robot.devices[device].label}?"
+
+
+def without_words(robot: Robot, device: str, activity: Activity, why: str) -> str:
+    """Tell `why` a device does not start, and what Tangy does without it.
+
+    Args:
+        robot: the robot, which has the device.
+        device: the name of the device.
+        activity: the activity that it plays.
+        why: a sentence.
+    """
+    before = missing_words(robot, activity)
+    new = [one for one in missing_words(left_out(robot, device), activity) if one not in before]
+    return " ".join([why, STANDS_OFF, *new, UNTIL_AGAIN])
 
 
 def no_camera_words(object: str) -> str:

@@ -215,6 +215,8 @@ async def _switch_on(
     game that a person has joined: a STOP holds for it, and why the robot is off is left to tell.
     """
     from tangy_hw.cancellation import Cancelled
+    from tangy_hw.device_protocols import DeviceFailed
+    from tangy_profiles.known_devices import can_be_left_out
     from tangy_tui.app.game_commands import StopRobot
     from tangy_tui.ui.dialogs.message import MessageDialog
     from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
@@ -226,7 +228,7 @@ async def _switch_on(
         lambda: parts_lines(robot.parts, robot.done, profile),
         joins=() if before is None else before.control.welcomes,
     )
-    robot.failure = ""
+    robot.failure, failed = "", ""
     program.push_screen(dialog)
     await dialog.shown()
     await asyncio.sleep(TYPED_AHEAD_SECONDS)
@@ -240,6 +242,7 @@ async def _switch_on(
         pass
     except TangyError as error:
         robot.failure = str(error)
+        failed = error.device if isinstance(error, DeviceFailed) else ""
     except asyncio.CancelledError:  # the program is ending
         robot.cancel()
         raise
@@ -247,9 +250,28 @@ async def _switch_on(
         dialog.over()
         if before is not None and dialog.stopped:
             before.control.apply(StopRobot())
-    if robot.failure and before is None:
+    if can_be_left_out(profile, failed):
+        if await _leaves_out(program, failed, robot.failure):
+            return await _switch_on(program, robot, before)
+    elif robot.failure and before is None:
         await program.push_screen_wait(MessageDialog(robot.failure, title="Not yet"))
     return None
+
+
+async def _leaves_out(program: Program, device: str, why: str) -> bool:
+    """Ask whether to go on without a device that does not start, and leave it out then."""
+    from tangy_profiles.known_devices import left_out
+    from tangy_tui.text.missing_devices import go_on_without, without_words
+    from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+
+    workspace = program.workspace
+    question = go_on_without(workspace.robot, device)
+    detail = without_words(workspace.robot, device, workspace.activity, why)
+    dialog = ConfirmDialog(question, detail, yes="go on without it", no="leave it off")
+    if not await program.push_screen_wait(dialog):
+        return False
+    workspace.robot = left_out(workspace.robot, device)
+    return True
 
 
 def _heard(opening: asyncio.Future[LiveWorld]) -> None:

@@ -202,3 +202,14 @@ class TestPeople:
         """It takes no longer than before the robot kept away from people."""
         for drive, seconds in zip(drives("alone", 2, seed=7), (16.3, 15.0), strict=True):
             assert drive.arrived and drive.time <= seconds
+
+
+def test_beams_without_a_measurement_neither_show_nor_clear_an_obstacle() -> None:
+    obstacles, scan = Obstacles(MAP), look(room_sides(ROOM, (5.8, 2.4, 6.0, 2.6)), HERE)
+    for _ in range(3):
+        obstacles.see(HERE, scan, TICK)
+    before = len(obstacles.points)
+    assert before
+    for _ in range(20):
+        obstacles.see(HERE, replace(scan, ranges=np.full_like(scan.ranges, np.inf)), TICK)
+    assert len(obstacles.points) == before

@@ -31,6 +31,7 @@ from tangy_hw.drivers.ros_messages import (
     twist_of,
     within,
 )
+from tangy_hw.watchdogs import BLIND
 
 METRES = st.floats(-50, 50)
 HEADINGS = st.floats(-3.1, 3.1)
@@ -113,6 +114,12 @@ class TestScans:
     def test_an_invalid_scan_is_refused(self, wrong: dict[str, Any]) -> None:
         with pytest.raises((ValueError, TypeError)):
             scan_of({**SCAN, "ranges": [1.0], **wrong})
+
+    def test_a_scan_of_nothing_but_null_shows_nothing_near_and_nothing_new(self) -> None:
+        scans = [scan_of({**SCAN, "ranges": [None] * 20}) for _ in range(3)]
+        assert np.isinf(scans[0][0].ranges).all()
+        assert near_share(scans[0][1], 0.15) == 0
+        assert changed_share([raw for _, raw in scans]) < BLIND
 
     def test_identical_beams_count_as_unchanged(self) -> None:
         first = np.array([1.0, 2.0, math.nan, math.inf])

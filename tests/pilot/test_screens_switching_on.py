@@ -11,7 +11,7 @@ import pytest
 from textual.app import App
 
 from tangy_hw.cancellation import Cancellation
-from tangy_hw.device_protocols import DeviceError
+from tangy_hw.device_protocols import DeviceError, DeviceFailed
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.workspace import Workspace
@@ -31,7 +31,7 @@ from tests.support.waiting import until, until_shown
 class Robot:
     """A robot whose devices answer when the test allows it."""
 
-    def __init__(self, workspace: Workspace, wrong: str = "") -> None:
+    def __init__(self, workspace: Workspace, wrong: DeviceError | None = None) -> None:
         self.did: list[str] = []
         self.answers = threading.Event()
         self.link = HeldLink()
@@ -47,8 +47,8 @@ class Robot:
         try:
             assert self.answers.wait(20)
             cancellation.check()
-            if self._wrong:
-                raise DeviceError(self._wrong)
+            if self._wrong is not None:
+                raise self._wrong
             self.did.append("is on")
             yield held_world(self._workspace, self.link)
         finally:
@@ -168,10 +168,53 @@ async def test_the_game_begins_when_the_robot_answers_under_another_dialog(
 async def test_an_error_of_the_robot_is_shown(
     run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    robot = Robot(workspace, wrong="The arms have no cable.")
+    robot = Robot(workspace, DeviceError("The arms have no cable."))
     robot.answers.set()
     async with run(app=program(workspace, policy, robot)) as pilot:
         await until_shown(pilot, lambda: "The arms have no cable." in pilot.text())
         assert robot.did == ["begins", "is off"]
         await pilot.press("enter")
         await until_shown(pilot, lambda: robot.did[-1] == "over")
+
+
+class WithoutArms(Robot):
+    """A robot whose arms block, and which starts without them."""
+
+    @contextmanager
+    def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
+        if "arms" in self._workspace.robot.devices:
+            raise DeviceFailed("arms", "arms: its driver has not started within 27 s.")
+        with super().__call__(stepped, cancellation) as world:
+            yield world
+
+
+@pytest.mark.parametrize("key", ["y", "n"])
+async def test_staff_go_on_without_a_device_that_blocks_or_leave_the_robot_off(
+    run: Run, workspace: Workspace, policy: Policy, key: str
+) -> None:
+    robot = WithoutArms(workspace)
+    robot.answers.set()
+    async with run(app=program(workspace, policy, robot), size=(120, 40)) as pilot:
+        await until_shown(pilot, lambda: "Go on without the arms?" in pilot.text())
+        text = " ".join(pilot.text().replace("│", " ").split())
+        assert "arms: its driver has not started within 27 s." in text
+        assert "The robot stands still, and is off." in text
+        assert "This robot has no arms: Tangy makes no gestures." in text
+        await pilot.press(key)
+        if key == "y":
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
+            assert "is on" in robot.did
+        else:
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, HomeScreen))
+            assert robot.did == ["over"]
+
+
+async def test_a_robot_that_needs_the_device_that_blocks_stays_off(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    why = "stop_button: its driver has not started within 27 s."
+    robot = Robot(workspace, DeviceFailed("stop_button", why))
+    robot.answers.set()
+    async with run(app=program(workspace, policy, robot)) as pilot:
+        await until_shown(pilot, lambda: why in " ".join(pilot.text().split()))
+        assert "Go on without" not in pilot.text()

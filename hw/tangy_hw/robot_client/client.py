@@ -22,8 +22,9 @@ from pathlib import Path
 from typing import Any
 
 from tangy_hw.cancellation import Cancellation, Cancelled
-from tangy_hw.device_protocols import DeviceError
+from tangy_hw.device_protocols import DeviceError, DeviceFailed
 from tangy_hw.robot_client.robot_state import RobotState
+from tangy_hw.robot_client.starting import StartUp
 from tangy_hw.robot_process.protocol import level_of
 from tangy_hw.robot_process.requests import Request
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
@@ -43,7 +44,7 @@ LATE_SECONDS = 0.25
 SILENT_STEPPED = 10.0  # on a stepped bench, where a busy machine may be slow
 HANGS_SECONDS = 2.0
 """Silence after which a screen counts as hanging: staff could not stop the robot."""
-START_SECONDS = 30.0
+BEGIN_SECONDS = 30.0  # until the first heartbeat of a robot that is on
 ANSWER_SECONDS = 240.0  # longer than any request; a drive ends by itself before
 END_SECONDS = 3.0
 CALLED_OFF_SECONDS = 1.0
@@ -91,7 +92,7 @@ class RobotLink:
         self.on_answer: Callable[[str], object] = _nothing
         """Called, on its own thread, with the key of each call answered at the robot."""
         self._calls: dict[str, str] = {}
-        self._told = _Told()
+        self._told, self._start_up = _Told(), StartUp()
         self._said = threading.Condition()
         self._closing = threading.Event()
         self._alive: float | None = None  # time of the last sign of life from a screen
@@ -113,18 +114,18 @@ class RobotLink:
             worker = self._begin()
         self._cancellation.register(partial(_call_off, worker))
         try:
-            told = worker.first.result(START_SECONDS)
+            told = self._start_up.wait(worker.first)
             self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
         except TooLate:
             self._end()
-            raise DeviceError("The robot process does not begin.") from None
+            raise self._start_up.blocked() from None
         except CancelledError:
             raise Cancelled from None
 
     def _begin(self) -> WorkerProcess:
         """Start the process, and send it the setup."""
         self._closing.clear()
-        self._told = _Told()
+        self._told, self._start_up = _Told(), StartUp()
         try:
             worker = self.worker = WorkerProcess(
                 [*CHILD, str(os.getpid())],
@@ -252,7 +253,7 @@ class RobotLink:
 
     def beat(self) -> RobotState:
         """Wait for the robot's next heartbeat, and return its state."""
-        last, until = self.state.number, time.monotonic() + START_SECONDS
+        last, until = self.state.number, time.monotonic() + BEGIN_SECONDS
         while (
             self.state.number == last
             and not (self._how or self._cancellation.cancelled)
@@ -322,8 +323,9 @@ class RobotLink:
     def _hear(self, said: Said, _: bytes) -> bool:
         """Handle a message; return whether it was not an answer."""
         self._told.time = max(self._told.time, said.get("at", 0.0))
-        if "starts" in said:
-            self._cancellation.starts(str(said["starts"]))
+        if (part := self._start_up.hear(said)) is not None:
+            if part:
+                self._cancellation.starts(part)
             return True
         if "beat" not in said:
             return False
@@ -358,6 +360,8 @@ def _answer(said: Said) -> dict[str, Any]:
         Preempted: it was aborted.
         DeviceError: it failed.
     """
+    if "device" in said and "failed" in said:
+        raise DeviceFailed(str(said["device"]), said["failed"])
     if "failed" in said:
         kind = Preempted if said.get("broken") else DeviceError
         raise kind(said["failed"])

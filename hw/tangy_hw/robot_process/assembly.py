@@ -11,7 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from tangy_hw.device_protocols import Clock, DeviceError, ExternalNavigation, MachineClock, Pose
+from tangy_hw.device_protocols import (
+    ANSWERED,
+    Clock,
+    DeviceError,
+    ExternalNavigation,
+    MachineClock,
+    Pose,
+)
 from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
@@ -30,12 +37,16 @@ from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.help_request_source import RequestSource
 from tangy_hw.robot_process.body import Body
 from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_process.driver_checks import safe_reading
 from tangy_hw.robot_setup import RobotSetup, Setting
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import OK, WARN, Reading
+from tangy_profiles.known_devices import left_out
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 
+Calls = Callable[..., object]
+"""Takes the device whose driver is called next, "" for none, and what it has to do in time."""
 WAKE_SECONDS = 8.0  # for devices that were switched on to send first data
 PIPE_LOOKS = 3  # frames that may still be in a pipe
 AGREED_LOOKS = 2  # successive frames that show exactly the confirmed signs
@@ -71,6 +82,8 @@ class RobotRuntime:
         self._senses = senses
         self.starts: Callable[[str], object] = lambda part: None
         """Called with the name of each part during start-up."""
+        self.calls: Calls = lambda device, did="": None
+        """Called before each driver is read for the first time."""
         self._open = AsyncExitStack()
 
     async def __aenter__(self) -> RobotRuntime:
@@ -87,6 +100,7 @@ class RobotRuntime:
             self.starts("senses")
             await self._senses.prepare()
             self.starts("first words")
+            self._read()
             await self._wake()
             self.robot.watch_ticks()  # slow steps of the start are over
         except BaseException:
@@ -96,6 +110,13 @@ class RobotRuntime:
 
     async def __aexit__(self, *_: object) -> None:
         await self._open.aclose()
+
+    def _read(self) -> None:
+        """Read each device once: a driver that blocks is the one that was named last."""
+        for device in self.robot.body.all:
+            self.calls(device.name, ANSWERED)
+            safe_reading(device)
+        self.calls("")
 
     async def _wake(self) -> None:
         """Wait until every device has sent data; the readings show those that have not."""
@@ -120,20 +141,28 @@ class RobotRuntime:
             await asyncio.sleep(0.01)
 
 
-def assemble(setup: RobotSetup) -> RobotRuntime:
+def assemble(setup: RobotSetup, calls: Calls = lambda device, did="": None) -> RobotRuntime:
     """Assemble a robot from a setup, without switching it on.
+
+    Args:
+        setup: the setup.
+        calls: called before each driver is opened.
 
     Raises:
         TangyError: a profile has a mistake, or a driver's settings are invalid.
     """
     robot, activity = load_robot(setup.robot), load_activity(setup.activity)
+    for name in setup.without:
+        robot = left_out(robot, name)
     room = load_room(setup.room)
     clock: Clock = SteppedClock() if setup.stepped else MachineClock()
     wiring = Wiring(robot, activity, clock, pairing=setup.pairing)
-    devices: dict[str, Any] = {
-        name: open_device(wiring, name, values)
-        for name, values in drivers_of(robot, setup.drivers).items()
-    }
+    devices: dict[str, Any] = {}
+    for name, values in drivers_of(robot, setup.drivers).items():
+        if name not in setup.without:
+            calls(name)
+            devices[name] = open_device(wiring, name, values)
+    calls("")
     body = _body(devices, wiring)
     sensors = CameraHub(
         robot,
@@ -220,7 +249,7 @@ def _wayfinder(
 
 
 def _requests(setup: RobotSetup, room: Room) -> RequestSource | None:
-    if not setup.requests:
+    if not setup.requests or REQUESTS in setup.without:
         return None
     from tangy_hw.perception.requests.sources import open_requests
 

@@ -18,12 +18,14 @@ import numpy as np
 from tangy_hw.device_protocols import (
     Device,
     DeviceError,
+    DeviceFailed,
     Odometry,
     Pose,
     Scan,
     Stamped,
     Twist,
     fails,
+    hangs,
 )
 from tangy_hw.navigation.poses import compose, relative_pose, up_to
 from tangy_profiles.errors import TangyError
@@ -49,18 +51,16 @@ ORIGIN = 0.05  # m and rad from the pose that a base has when it is switched on
 GAP_SECONDS = 1.0  # of silence, after which a base may have been switched on again
 
 
-def hangs(seconds: float, did: str = "started") -> str:
-    """Return what is told about a driver that has not `did` something within some s."""
-    return f"its driver has not {did} within {seconds:g} s."
-
-
 async def start_device(device: Device, seconds: float = START_SECONDS) -> None:
     """Start a device, within so many s.
 
     Raises:
-        TangyError: its driver fails, or takes too long; the sentence names the device.
+        DeviceFailed: its driver fails, or takes too long; the sentence names the device.
     """
-    await _within(device, seconds, device.start)
+    try:
+        await _within(device, seconds, device.start)
+    except TangyError as error:
+        raise DeviceFailed(device.name, str(error)) from error
 
 
 async def restart_device(device: Device, seconds: float = START_SECONDS) -> None:

@@ -25,10 +25,10 @@ from queue import Empty, SimpleQueue
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from tangy_hw.device_protocols import DeviceError
+from tangy_hw.device_protocols import DeviceError, hangs
 from tangy_hw.drivers.camera_source import CameraSource
 from tangy_hw.perception.camera_hub import Sources
-from tangy_hw.robot_process.driver_checks import START_SECONDS, hangs
+from tangy_hw.robot_process.driver_checks import START_SECONDS
 from tangy_hw.robot_process.self_test import (
     CLOSE_SECONDS,
     CLOSES,

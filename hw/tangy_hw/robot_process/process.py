@@ -4,8 +4,8 @@ The first line is a `RobotSetup`. Then each line is a request: {"id": 7, "do": "
 answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
 aborted}; several may be in progress. {"beat": n} is a heartbeat of the program, without an answer.
 An invalid line is answered with its error, and ends nothing. During start-up it sends {"starts":
-"laser"} and so on, then {"beat": {...}} ten times a second: health, pose, requests, and why it
-stands.
+"laser"} and so on, and {"calls": "laser"} before a driver is opened or first read; then {"beat":
+{...}} ten times a second: health, pose, requests, and why it stands.
 
 Whatever happens to the program, the robot stops: when its pipe closes, the process stops the robot
 and exits; after a while without messages, it stops the robot and aborts its tasks.
@@ -24,7 +24,7 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any, assert_never
 
-from tangy_hw.device_protocols import Twist
+from tangy_hw.device_protocols import STARTED, DeviceFailed, Twist
 from tangy_hw.robot_process.assembly import RobotRuntime, assemble
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
@@ -342,8 +342,12 @@ async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> in
     _, out = await asyncio.get_running_loop().connect_write_pipe(AnswerPipe, sys.stdout)
     try:
         setup = RobotSetup.from_json(await lines.readline())
-        wired = assemble(setup)
-        wired.starts = lambda part: out.write({"starts": part})
+
+        def calls(device: str, did: str = STARTED) -> None:
+            out.write({"calls": device, "did": did})
+
+        wired = assemble(setup, calls)
+        wired.starts, wired.calls = lambda part: out.write({"starts": part}), calls
         # SIGTERM has the effect of a closed pipe; before this, nothing is open.
         asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, pipe.close)
         async with switched_on(wired, lines) as said:
@@ -351,7 +355,8 @@ async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> in
                 return 1
             await RobotProcess(wired, out.write, stepped=setup.stepped).live(said, lines)
     except TangyError as error:
-        out.write({"failed": str(error)})
+        device = {"device": error.device} if isinstance(error, DeviceFailed) else {}
+        out.write({"failed": str(error), **device})
         await asyncio.sleep(0.1)  # until it is written
         return 2
     return 0

@@ -21,6 +21,7 @@ from tangy_hw.device_protocols import (
     Laser,
     MachineClock,
     fails,
+    hangs,
 )
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.registry import Wiring, known_drivers, open_device
@@ -31,7 +32,6 @@ from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
 from tangy_hw.robot_process.driver_checks import (
     START_SECONDS,
-    hangs,
     odometry_problem,
     scan_problem,
 )

@@ -1,0 +1,76 @@
+"""A driver that blocks while the robot is switched on is named, and can be left out."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tangy_hw.device_protocols import DeviceFailed
+from tangy_hw.robot_client import client, starting
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_setup import RobotSetup
+from tangy_profiles.known_devices import can_be_left_out, left_out
+from tangy_profiles.robot import load_robot
+
+GRIPPER = """
+[[devices]]
+name = "gripper"
+label = "gripper"
+stale_after = 5
+"""
+SECONDS = 1.5
+ROBOT = Path(__file__).with_name("blocking_robot.py")
+
+
+def robot_file(folder: Path) -> Path:
+    path = folder / "mine.toml"
+    shipped = load_robot().file.read_text(encoding="utf-8")
+    kinds = "".join(f'{name} = {{ kind = "told" }}\n' for name in ("base", "laser", "gripper"))
+    path.write_text(f"{shipped}\n[drivers]\n{kinds}{GRIPPER}", encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def setup(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RobotSetup:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
+    return RobotSetup(str(robot_file(tmp_path)), "bingo", ("user_1",))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("step", "did"), [("open", "started"), ("start", "started"), ("read", "answered")]
+)
+def test_a_driver_that_blocks_is_named_and_the_robot_starts_without_it(
+    step: str, did: str, setup: RobotSetup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(client, "CHILD", (sys.executable, str(ROBOT), step))
+    monkeypatch.setattr(starting, "DEVICE_SECONDS", SECONDS)
+    link = RobotLink(setup)
+    with pytest.raises(DeviceFailed) as failed:
+        link.start()
+    assert failed.value.device == "gripper"
+    assert str(failed.value) == f"gripper: its driver has not {did} within {SECONDS:g} s."
+    assert link.pid is None  # nothing is left that could drive
+    assert not (tmp_path / "told.txt").exists()
+
+    monkeypatch.setattr(starting, "DEVICE_SECONDS", 60.0)
+    link = RobotLink(replace(setup, without=("gripper",)))
+    try:
+        link.start()
+        assert link.pid is not None
+        assert "gripper" not in [reading.device for reading in link.beat().health]
+    finally:
+        link.close()
+
+
+def test_a_robot_can_do_without_its_arms_but_not_without_what_it_drives_by() -> None:
+    robot = load_robot()
+    assert can_be_left_out(robot, "arms") and can_be_left_out(robot, "voice")
+    for needed in ("base", "laser", "stop_button", "wings"):
+        assert not can_be_left_out(robot, needed)
+    without = left_out(robot, "arms")
+    assert "arms" not in without.devices
+    assert [device.name for device in without.undriven] == ["arms"]
