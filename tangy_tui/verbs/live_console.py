@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from tangy_hw.device_protocols import DeviceFailed
 from tangy_profiles.errors import TangyError
-from tangy_profiles.known_devices import can_be_left_out, left_out, reads_cards
+from tangy_profiles.known_devices import reads_cards
 from tangy_profiles.reading import plain
 from tangy_tui.app.live_games import LiveGames, News
 from tangy_tui.app.on_duty import on_duty
@@ -17,19 +17,14 @@ from tangy_tui.app.robot_opening import WorldOpening, at_front
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.switching_on import switched_on
 from tangy_tui.console.inputs import is_typed, line_reader
+from tangy_tui.console.leaving_out import leaves_out, on_or_without
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.console.typed_lines import typed_lines
-from tangy_tui.language.answers import yes_or_no
 from tangy_tui.text.calls import REHEARSAL
 from tangy_tui.text.command_line import SWITCHING_ON
 from tangy_tui.text.live_games import part_words, report_words
 from tangy_tui.text.live_news import live_lines
-from tangy_tui.text.missing_devices import (
-    go_on_without,
-    missing_words,
-    staff_needed,
-    without_words,
-)
+from tangy_tui.text.missing_devices import missing_words, staff_needed
 from tangy_tui.text.outcomes import faults_logged, score_lines
 from tangy_tui.text.set_up import as_before_words
 from tangy_tui.text.tablet import screen_words
@@ -38,6 +33,8 @@ from tangy_tui.verbs.live_lines import LiveLines
 from tangy_tui.verbs.playing import SCRIPTED, recall
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_tui.learning.policy import Policy
     from tangy_tui.monitoring.supervision import Event, Supervision
@@ -128,36 +125,24 @@ class GamesWithoutScreen:
         print_line(report_words(self._given.report))
         return fine
 
-    @contextmanager
-    def _switched_on(self, opening: WorldOpening) -> Iterator[LiveWorld]:
+    def _switched_on(self, opening: WorldOpening) -> AbstractContextManager[LiveWorld]:
         """Switch the robot on; as fast as possible if nobody plays and no link delays it."""
         given = self._given
         stepped = given.bench and not given.plain_lines and given.link is None
-        with ExitStack() as on:
-            world: LiveWorld | None = None
-            while world is None:
-                one = switched_on(
-                    opening, stepped=stepped, tell=self._tell_part, meanwhile=self._take_lines
-                )
-                try:
-                    world = on.enter_context(one)
-                except DeviceFailed as error:
-                    if not self._leaves_out(error):
-                        raise
-            yield world
+
+        def switch_on() -> AbstractContextManager[LiveWorld]:
+            return switched_on(
+                opening, stepped=stepped, tell=self._tell_part, meanwhile=self._take_lines
+            )
+
+        return on_or_without(switch_on, self._leaves_out)
 
     def _leaves_out(self, error: DeviceFailed) -> bool:
         """Ask a person at the lines whether to go on without a device that does not start."""
-        console, workspace = self._console, self._workspace
-        robot = workspace.robot
-        if console is None or not console.typed or not can_be_left_out(robot, error.device):
+        console = self._console
+        if console is None or not console.typed:
             return False
-        console.write(without_words(robot, error.device, workspace.activity, str(error)))
-        console.write(f"{go_on_without(robot, error.device)} (y/n)")
-        if yes_or_no(console.read() or "") is not True:
-            return False
-        workspace.robot = left_out(robot, error.device)
-        return True
+        return leaves_out(self._workspace, error, console.read, console.write)
 
     def _tell_devices(self, world: LiveWorld) -> None:
         """Tell the address of the tablet's page, and which devices the robot lacks."""
