@@ -4,8 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
-from tangy_profiles.staff_records import StaffAction
+from tangy_profiles.staff_records import StaffActionKind
+
+
+class CardAction(Protocol):
+    """What the log says of a card: a staff action, or its copy in a report."""
+
+    @property
+    def did(self) -> StaffActionKind | str:
+        """The kind of the action."""
+        ...
+
+    @property
+    def person(self) -> str:
+        """The person it concerns."""
+        ...
+
+    @property
+    def detail(self) -> str:
+        """The card, or the cards of people."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +36,7 @@ class KnownCards:
     seen: Mapping[str, int] = field(default_factory=dict[str, int])
 
     @classmethod
-    def of(cls, notes: Iterable[StaffAction]) -> KnownCards:
+    def of(cls, notes: Iterable[CardAction]) -> KnownCards:
         """Return what the log says of a game, oldest note first; a card has one owner."""
         given, seen = dict[str, int](), dict[str, int]()
         for note in notes:

@@ -13,6 +13,7 @@ from typing import Any
 from tangy_tui.monitoring.attention import attention_in, calls_in
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.house import RobotLog
+from tangy_tui.monitoring.played_for import wins_of
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted, Unclear
 
 Cell = str | int | float | bool | None
@@ -88,6 +89,8 @@ def _people(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
             "last_visit": one.last_visit,
             "helped": sum(one.helped.values()),
             "won": one.won,
+            "won_cards": [win.card or 0 for _, win in wins_of(replay, person)],
+            "won_calls": [win.call for _, win in wins_of(replay, person)],
             "asked": len(own),
             "complied": sum(answer.complied is True for answer in own),
             "late": sum(answer.complied is False and bool(answer.followed) for answer in own),
@@ -197,7 +200,7 @@ TABLES = (
     DataTable(
         "people",
         (*HEAD, "person", "requests", "waits", "open_waits", "visits", "seconds_with", "last_visit",
-         "helped", "won", "asked", "complied", "late", "not_known"),
+         "helped", "won", "won_cards", "won_calls", "asked", "complied", "late", "not_known"),
         _people,
     ),
     DataTable(

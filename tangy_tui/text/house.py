@@ -24,7 +24,7 @@ from tangy_tui.text.report import (
     waited_words,
 )
 from tangy_tui.text.results import ways_of
-from tangy_tui.text.taking_part import stay_words
+from tangy_tui.text.taking_part import stay_words, won_words
 from tangy_tui.text.times import length, on_day
 from tangy_tui.text.worlds import WORLDS_IN_REPORTS
 
@@ -146,7 +146,7 @@ def game_rows(games: Sequence[PersonInGame]) -> Iterator[tuple[str, ...]]:
             time_words(got),
             helped_words(got, filter(None, [one.replay.activity])),
             response_words(one.answers),
-            "yes" if got.won else "",
+            won_words(one.replay, got.id) or ("yes" if got.won else ""),
         )
 
 

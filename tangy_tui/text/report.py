@@ -24,14 +24,16 @@ from tangy_tui.monitoring.attention import (
 from tangy_tui.monitoring.claims import claims_in
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.pauses import PauseTotal
+from tangy_tui.monitoring.played_for import wins_of
 from tangy_tui.monitoring.presence import stays
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, Moment
 from tangy_tui.monitoring.session import Session
-from tangy_tui.text.changes import changed_words
+from tangy_tui.text.changes import changed_words, pattern_words
 from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.numbers import counted, listed, often
 from tangy_tui.text.planned_time import planned_until_words
 from tangy_tui.text.situations import SOMEBODY, Name
+from tangy_tui.text.taking_part import with_card_words
 from tangy_tui.text.times import length, time_of_day
 
 if TYPE_CHECKING:
@@ -275,7 +277,7 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
     games = list(replays)
     changes = [one for replay in games for one in replay.changes]
     lines = [
-        f"At {time_of_day(moment.at)} {changed_words(change, None, name)}"
+        f"At {time_of_day(moment.at)} {_change_words(replay, moment, change, name)}"
         f"{_left_words(replay, moment, change, name)}"
         for replay in games
         for moment, change in replay.changes
@@ -291,6 +293,17 @@ def changes_lines(replays: Iterable[GameReplay], name: Name) -> list[str]:
     if waited := [count for replay in games for count in waiting_at_calls_first(replay)]:
         lines.append(_calls_first_words(waited))
     return lines
+
+
+def _change_words(replay: GameReplay, moment: Moment, change: GameChange, name: Name) -> str:
+    """Describe a change, and the card of a win."""
+    told, won = changed_words(change, None, name), f"{name(change.person)} has won"
+    before = [one for one in wins_of(replay, change.person) if one[1].at <= moment.at]
+    if not before or not told.startswith(won):
+        return told
+    pattern, win = before[-1]
+    what = f" ({pattern_words(replay.activity, (pattern,))})" if pattern else ""
+    return f"{won}{what}{with_card_words(replay, win)}{told.removeprefix(won)}"
 
 
 def _calls_first_words(waited: Sequence[int]) -> str:

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import TYPE_CHECKING
 
+from tangy_tui.monitoring.played_for import wins_of
 from tangy_tui.text.changes import pattern_words
 from tangy_tui.text.numbers import listed
 
 if TYPE_CHECKING:
-    from tangy_tui.monitoring.played_for import PlayedFor
+    from tangy_tui.monitoring.played_for import PlayedFor, Win
     from tangy_tui.monitoring.presence import Stay
     from tangy_tui.monitoring.replay import GameReplay
     from tangy_tui.monitoring.session import Session
@@ -29,16 +30,56 @@ def played_for_rows(session: Session) -> list[tuple[str, str]]:
     rows = []
     for replay, found in zip(session.replays, session.played_for, strict=True):
         if found:
-            words = ", then ".join(_pattern_words(replay, one, session.name) for one in found)
+            words = "; then ".join(_pattern_words(replay, one, session.name) for one in found)
             game = f", game {replay.game.number}" if len(session.replays) > 1 else ""
             rows.append((f"{PLAYED_FOR if found[0].pattern else WON}{game}", words))
     return rows
 
 
 def _pattern_words(replay: GameReplay, one: PlayedFor, name: Name) -> str:
-    who = f"{listed(dict.fromkeys(map(name, one.winners)))} won" if one.winners else NOBODY_WON
+    who = wins_words(replay, one.wins, name) if one.wins else NOBODY_WON
     who = who if one.reached else NOT_REACHED
-    return f"{pattern_words(replay.activity, (one.pattern,))} ({who})" if one.pattern else who
+    return f"{pattern_words(replay.activity, (one.pattern,))}: {who}" if one.pattern else who
+
+
+def wins_words(replay: GameReplay, wins: Sequence[Win], name: Name) -> str:
+    """Tell who won with which card, and at which call: once if it is the same for all."""
+    ways = dict.fromkeys(
+        (name(win.person), _card_words(win), _call_words(replay, win)) for win in wins
+    )
+    if len(ways) == 1:
+        ((who, card, call),) = ways
+        return f"{who} won{card}{call}"
+    calls = {call for _, _, call in ways}
+    same = calls.pop() if len(calls) == 1 else ""
+    return f"{listed(who + card + ('' if same else call) for who, card, call in ways)} won{same}"
+
+
+def with_card_words(replay: GameReplay, win: Win) -> str:
+    """Tell with which card somebody won, and at which call."""
+    return f"{_card_words(win)}{_call_words(replay, win)}"
+
+
+def _card_words(win: Win) -> str:
+    return f" with card {win.card}" if win.card else ""
+
+
+def _call_words(replay: GameReplay, win: Win) -> str:
+    """Tell at which call somebody won, with its number: " at call 23 (O-70)"."""
+    if not win.call:
+        return ""
+    label = f" ({replay.activity.deck.label(win.number)})" if replay.activity else ""
+    return f" at call {win.call}{label}"
+
+
+def won_words(replay: GameReplay, person: str) -> str:
+    """Tell with which card, for what, and at which call a person won; "" if they did not."""
+    told = []
+    for pattern, win in wins_of(replay, person):
+        what = pattern_words(replay.activity, (pattern,)) if pattern else ""
+        parts = (f"card {win.card}" if win.card else "", what, f"call {win.call}")
+        told.append(", ".join(part for part in parts[: 3 if win.call else 2] if part) or "yes")
+    return "; ".join(told)
 
 
 def stay_words(stays: Sequence[Stay]) -> str:
