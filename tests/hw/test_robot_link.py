@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any, cast
 
 import pytest
@@ -17,13 +18,20 @@ from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client import client
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_process.stop_latch import Preempted
+from tangy_hw.robot_process.stop_latch import FAULT, STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.write_queue import WriteQueue
 
 SETUP = RobotSetup("tangy", "bingo", ("user1",))
 PIPE = 1 << 16  # bytes that a pipe holds
 READY = "import sys, time; sys.stdin.readline(); print('{\"ready\": true}', flush=True); "
+TELLS = """
+import os
+told = open(f'{path}/{os.getpid()}', 'w', 1)
+for line in sys.stdin:
+    if '"do"' in line:
+        told.write(line)
+"""
 AT_ONCE = 0.5
 
 
@@ -164,6 +172,33 @@ class TestEnd:
 
 SILENT = "import sys, time; sys.stdin.readline(); "
 STUBBORN = "import signal, sys, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); "
+
+
+class TestRestart:
+    def test_a_new_process_is_stopped_by_all_who_stopped_the_one_before(
+        self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    ) -> None:
+        link = linked(monkeypatch, TELLS.replace("{path}", str(tmp_path)))
+
+        def restarted(*by: str) -> bool:
+            link.restart()
+            link.tell("settle")
+            path = tmp_path / str(link.pid)
+            assert holds(lambda: "settle" in path.read_text())
+            told = map(json.loads, path.read_text().splitlines())
+            return [one["by"] for one in told if one["do"] == "stop"] == list(by)
+
+        try:
+            link.stop("staff stopped it")
+            link.stop("laser-disconnected", by=FAULT)
+            assert restarted(STAFF, FAULT)
+            link.release(by=FAULT)
+            assert restarted(STAFF)
+            link.stop("base-failed", by=FAULT)
+            link.release()
+            assert restarted()
+        finally:
+            link.close()
 
 
 class TestCalledOff:

@@ -92,6 +92,7 @@ class RobotLink:
         self.on_answer: Callable[[str], object] = _nothing
         """Called, on its own thread, with the key of each call answered at the robot."""
         self._calls: dict[str, str] = {}
+        self._stops: dict[str, str] = {}  # by source: those that hold, also for another process
         self._told, self._start_up = _Told(), StartUp()
         self._said = threading.Condition()
         self._closing = threading.Event()
@@ -138,6 +139,8 @@ class RobotLink:
         except WorkerError as error:
             raise DeviceError(f"The robot process cannot be started ({error}).") from None
         worker.tell(self.setup.to_json())
+        for by, why in tuple(self._stops.items()):
+            worker.tell({**self._command("stop"), "why": why, "by": by})
         if self._calls:
             worker.tell({**self._command("show calls"), "calls": self._calls})
         self.beating = threading.Thread(target=self._beat, args=(worker,), daemon=True)
@@ -145,7 +148,7 @@ class RobotLink:
         return worker
 
     def restart(self) -> None:
-        """End the process, whatever its state, and start another.
+        """End the process, whatever its state, and start another, which is as stopped as it was.
 
         Raises:
             DeviceError: it cannot be started, or this link was closed meanwhile.
@@ -296,10 +299,13 @@ class RobotLink:
 
     def stop(self, why: str, by: str = STAFF) -> None:
         """Stop the robot now, ahead of everything; it latches until `by` releases it."""
+        self._stops.setdefault(by, why)
         self.tell("stop", why=why, by=by)
 
     def release(self, by: str = "") -> None:
-        """Release the stop of one source, or of the source that stopped the robot."""
+        """Release the stop of one source, or of all."""
+        for one in (by,) if by else tuple(self._stops):
+            self._stops.pop(one, None)
         self.tell("release", by=by)
 
     def alive(self) -> None:
