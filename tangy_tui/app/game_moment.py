@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tangy_profiles.state import ActivityState
     from tangy_tui.app.claim_controls import ClaimNow
     from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.robot_controls import PersonWait
     from tangy_tui.app.staff_view import PersonNow
     from tangy_tui.learning.policy import Decision
 
@@ -73,6 +74,8 @@ class GameMoment:
     """After how many numbers a person who does not ask gets a visit; 0: never."""
     looking: str = ""
     """The person whose card is being read."""
+    waits_for: PersonWait | None = None
+    """For whom Tangy waits, as they are to respond or have time to act."""
     rests: bool = False
     """Whether Tangy waits for the time of the next call."""
     won: bool = False
@@ -129,6 +132,7 @@ def game_moment(control: GameController) -> GameMoment:
         near,
         tuple(one for one in asking if one != near),
         by_staff=control.robot.by_staff,
+        waits_for=control.robot.waits_for,
         rests=decision is not None and control.robot.rests(decision),
         turns=turns_from_now(world),
         decision=decision,

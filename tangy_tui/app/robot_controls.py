@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil
 from typing import TYPE_CHECKING
 
 from tangy_hw.robot_process.stop_latch import STAFF
@@ -25,6 +27,7 @@ from tangy_tui.learning.policy import Decision
 from tangy_tui.monitoring.attention import goes_to_people
 
 if TYPE_CHECKING:
+    from tangy_hw.robot_client.commands import WaitKind
     from tangy_hw.robot_client.help_requests import SignState
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_hw.robot_client.staff_card_reports import StaffCardReports
@@ -34,6 +37,15 @@ PROGRAM_ENDS = "the program ends"
 UNCLEAR, UNCLEAR_SURE = "?", 0.5
 """The suffix of an answer that staff did not understand clearly, and its probability."""
 DRIVE_AGAIN = 0.1  # s between two velocity commands: without them the robot stops
+
+
+@dataclass(frozen=True, slots=True)
+class PersonWait:
+    """The robot waits for a person, by id ("": for everybody), for so many s at most."""
+
+    kind: WaitKind
+    person: str
+    seconds: int
 
 
 class RobotControls:
@@ -95,6 +107,15 @@ class RobotControls:
     def going(self) -> str:
         """The destination it is driving to, a person's id or the front; "" if it is not driving."""
         return "" if self._robot is None else self._robot.link.state.going
+
+    @property
+    def waits_for(self) -> PersonWait | None:
+        """For whom it waits now, and how long at most; None if for nobody."""
+        robot = self._robot
+        waits = None if robot is None else robot.commands.waits_for
+        if robot is None or waits is None:
+            return None
+        return PersonWait(waits.kind, waits.person, max(1, ceil(waits.until - robot.link.time)))
 
     @property
     def lets(self) -> str:

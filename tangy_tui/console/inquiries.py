@@ -21,7 +21,7 @@ from tangy_tui.app.time_grammar import asks_time
 from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
-from tangy_tui.text.control import going_words, proposal_words
+from tangy_tui.text.control import going_words, person_wait_words, proposal_words
 from tangy_tui.text.earlier import earlier_fault_lines, earlier_lines
 from tangy_tui.text.faults import HALTED, advice_lines
 from tangy_tui.text.games import Demonstrations, why_lines
@@ -154,7 +154,8 @@ class Inquiries:
         doing = world.activity.in_words(state.situation)
         robot = self._controller.robot
         going = going_words(robot.going, self._name, robot.lets)
-        told = f"Now: {doing}.", going, f"{seen} ({self._controller.phase})", self._time()
+        waits = person_wait_words(robot.waits_for, self._name)
+        told = f"Now: {doing}.", going, waits, f"{seen} ({self._controller.phase})", self._time()
         return " ".join(filter(None, told))
 
     def _time(self) -> str:

@@ -15,6 +15,7 @@ from tangy_tui.text.player_reports import player_report_words
 if TYPE_CHECKING:
     from tangy_tui.app.claim_controls import ClaimNow
     from tangy_tui.app.game_commands import Autonomy, GameCommand
+    from tangy_tui.app.robot_controls import PersonWait
     from tangy_tui.app.staff_notes import NoteKind, Proposal, StaffNote
 
 HELD = {
@@ -80,6 +81,22 @@ def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:
         return ""
     waits = f" {words}" if (words := WAITS.get(lets)) else ""
     return f"Tangy drives to {'the front' if going == FRONT else name(going)}.{waits}"
+
+
+def person_wait_words(waits: PersonWait | None, name: Callable[[str], str]) -> str:
+    """Tell for whom the robot waits, and for how long at most; "" if for nobody."""
+    if waits is None:
+        return ""
+    who, most = name(waits.person) if waits.person else "everybody", f"up to {waits.seconds} s"
+    match waits.kind:
+        case "response":
+            return f"Tangy waits for {who} to respond, {most}."
+        case "sign":
+            return f"Tangy waits until {who} has put the sign down, {most}."
+        case "act":
+            return f"Tangy waits for {who}, {most}."
+        case forgotten:
+            assert_never(forgotten)
 
 
 def short_going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:

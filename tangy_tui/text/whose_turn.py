@@ -10,7 +10,12 @@ from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_world import SIMULATED
 from tangy_tui.app.game_moment import game_moment, turn_of
 from tangy_tui.app.staff_notes import StaffNote
-from tangy_tui.text.control import claimed_words, noted_words, stopped_words
+from tangy_tui.text.control import (
+    claimed_words,
+    noted_words,
+    person_wait_words,
+    stopped_words,
+)
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import moment_words
@@ -127,6 +132,8 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
         return "", ""
     if moment.welcomes:
         return welcomes_words(moment.welcomes), ""
+    if moment.waits_for is not None:
+        return person_wait_words(moment.waits_for, name), moment.waits_for.person
     if moment.looking:
         looks = f"Tangy looks at {name(moment.looking)}'s {activity.object}."
         return f"{looks} What it does next depends on that.", moment.looking

@@ -8,11 +8,15 @@ from pathlib import Path
 
 import pytest
 
+from tangy_hw.robot_client.commands import WaitKind
 from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.claim_controls import CLAIM_SECONDS
 from tangy_tui.app.game_commands import AskFor, ClaimCard, Pause, TakeOver
+from tangy_tui.app.robot_controls import PersonWait
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.text.control import person_wait_words
 from tangy_tui.text.staff_view import PAUSED, PAUSES_THEN, person_words
 from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, news_line, next_line
@@ -43,6 +47,42 @@ def test_until_the_card_is_read_the_next_step_is_to_look_at_it(robot: Robot) -> 
     assert next_of(robot).startswith("Next: ask to move the card closer")
     (arrives,) = (words for do, words in shown if do == "go")
     assert arrives.startswith(f"Next: go to {name}")
+
+
+def test_while_tangy_waits_for_a_person_it_says_for_whom_and_how_long(robot: Robot) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user2"))
+    robot.next(1)
+    name, most = robot.workspace.name("user2"), 2 * robot.world.activity.patience
+    shown = list[tuple[str, str]]()
+    inquiries = Inquiries(robot.control, robot.workspace.name, None, str)
+
+    def look(do: str, time: float) -> None:
+        where, why = ("".join(inquiries.lines(word) or []) for word in ("where", "why"))
+        words = next_of(robot)
+        assert ("waits for" in words) is ("waits for" in where) is ("waits for" in why)
+        shown.append((do, words))
+
+    robot.link.meanwhile = look
+    robot.next(1)  # ask to move the card closer, which the person does not do
+    waits = [words for _, words in shown if "waits for" in words]
+    left = [int(words.split()[-2]) for words in waits]
+    assert waits[0] == f"Tangy waits for {name} to respond, up to {left[0]} s."
+    assert most - 2 <= left[0] <= most and left == sorted(left, reverse=True) and left[-1] < 5
+    assert all("waits for" not in words for do, words in shown if do == "perform")
+    assert robot.control.robot.waits_for is None and "waits for" not in next_of(robot)
+
+
+@pytest.mark.parametrize(
+    ("kind", "person", "words"),
+    [
+        ("sign", "user2", "Tangy waits until Rosa has put the sign down, up to 8 s."),
+        ("act", "user2", "Tangy waits for Rosa, up to 8 s."),
+        ("act", "", "Tangy waits for everybody, up to 8 s."),
+    ],
+)
+def test_what_tangy_waits_for_is_told(kind: WaitKind, person: str, words: str) -> None:
+    assert person_wait_words(PersonWait(kind, person, 8), lambda id: "Rosa") == words
 
 
 def test_the_last_words_of_tangy_are_known_while_it_speaks(robot: Robot) -> None:

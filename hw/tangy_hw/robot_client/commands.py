@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.client import RobotLink
@@ -20,11 +21,26 @@ Diagnosed = Callable[[Health], Mapping[str, bool]]
 """Returns the codes of the faults that devices show, and whether each is critical."""
 
 
+WaitKind = Literal["response", "sign", "act"]
+"""What is waited for: the person does what they were asked, turns the sign down, or acts freely."""
+
+
+@dataclass(frozen=True, slots=True)
+class WaitsFor:
+    """The robot waits for a person ("": for everybody) until a time of the robot (s) at most."""
+
+    kind: WaitKind
+    person: str
+    until: float
+
+
 class Commands:
     """Sends commands to the robot and waits for each of them."""
 
     def __init__(self, link: RobotLink) -> None:
         self.link = link
+        self.waits_for: WaitsFor | None = None
+        """What people are given time for now; read from any thread."""
         self.diagnosed: Diagnosed = _nothing
         self._ignored: frozenset[str] = frozenset()
 
@@ -71,6 +87,15 @@ class Commands:
     def wait(self, seconds: float, *, asks: bool = False) -> None:
         """Let s pass, with `asks` only until a new request comes; raises as `do`."""
         self.do("wait", seconds=seconds, asks=asks)
+
+    @contextmanager
+    def waiting_for(self, kind: WaitKind, person: str, seconds: float) -> Iterator[None]:
+        """Tell meanwhile that the robot waits for a person ("": everybody), up to so many s."""
+        self.waits_for = WaitsFor(kind, person, self.link.time + seconds)
+        try:
+            yield
+        finally:
+            self.waits_for = None
 
     def settle(self) -> None:
         """Let a stepped bench deliver fresh observations."""

@@ -294,17 +294,18 @@ class DeclaredLiveWorld(LiveWorld):
         who, fact, value = asked
         began = before = self.link.time
         patience = self.activity.patience
-        while True:
-            self.commands.wait(LOOK_SECONDS)
-            self._hear()
-            now = self.link.time
-            seconds = (before + now) / 2 - began  # it was done between the two looks
-            if self.game.value(fact, who) == value:
-                return Response(who, action.strategy, True, seconds <= patience, seconds)
-            if now - began > PATIENCES * patience:
-                missed = Response(who, action.strategy, False, False, now - began)
-                return missed if self.sees_all else None
-            before = now
+        with self.commands.waiting_for("response", who, PATIENCES * patience):
+            while True:
+                self.commands.wait(LOOK_SECONDS)
+                self._hear()
+                now = self.link.time
+                seconds = (before + now) / 2 - began  # it was done between the two looks
+                if self.game.value(fact, who) == value:
+                    return Response(who, action.strategy, True, seconds <= patience, seconds)
+                if now - began > PATIENCES * patience:
+                    missed = Response(who, action.strategy, False, False, now - began)
+                    return missed if self.sees_all else None
+                before = now
 
     def _let_people_act(self, behaviour: str, whom: str | None) -> None:
         """Wait until people have changed the state that the policy sees, at most for the pause.
@@ -320,7 +321,8 @@ class DeclaredLiveWorld(LiveWorld):
         held: float | None = None  # when the person was asked again
         try:
             while self.link.time < until and self.game.seen(held) == seen:
-                self.commands.wait(LOOK_SECONDS, asks=True)
+                with self.commands.waiting_for("act", whom or "", until - self.link.time):
+                    self.commands.wait(LOOK_SECONDS, asks=True)
                 self._hear()
                 silent = silent and self.unsure is None and not self._did.get(whom or "")
                 until += self._ask_again()

@@ -139,8 +139,9 @@ class HelpRequestTracker:
         try:
             self._commands.do("answered", seat=self._people.index(person) + 1)
             self._commands.settle()
-            while person in self.all and self._link.time - began < SIGN_SECONDS:
-                self._look()
+            with self._commands.waiting_for("sign", person, SIGN_SECONDS):
+                while person in self.all and self._link.time - began < SIGN_SECONDS:
+                    self._look()
         finally:
             self._settling = ""
         if person in self.all and not self._sees:

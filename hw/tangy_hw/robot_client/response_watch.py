@@ -22,6 +22,15 @@ def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -
         told = world.eyes.response(action, place, person)
         world.tracker.seen = world.judged(place, world.eyes.state)
         return told
+    with world.commands.waiting_for("response", person, PATIENCES * patience):
+        return _watch(world, action, numbers, person)
+
+
+def _watch(
+    world: LiveWorld, action: Action, numbers: tuple[int, ...], person: str
+) -> Response | None:
+    """Look until a request has been carried out, or counts as ignored."""
+    patience = world.activity.patience
     began = before = world.link.time
     while True:
         done = _is_done(world, action.behaviour, numbers)

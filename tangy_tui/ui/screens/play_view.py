@@ -12,7 +12,7 @@ from tangy_tui.app.game_moment import plays_on
 from tangy_tui.app.readiness import battery_of
 from tangy_tui.app.staff_view import PersonNow, StaffView, next_step
 from tangy_tui.text import staff_view as text
-from tangy_tui.text.control import claimed_words, stopped_words
+from tangy_tui.text.control import claimed_words, person_wait_words, stopped_words
 from tangy_tui.text.joining import sets_up_words
 from tangy_tui.text.planned_time import Fact, time_facts
 from tangy_tui.ui.widgets.call_board import CallBoard, column_row
@@ -92,6 +92,8 @@ def next_line(shown: ViewSource) -> str:
     if control.obeys is not None:
         behaviour, whom = control.obeys
         words = text.obeys_words(behaviour, shown.name(whom) if whom else "")
+    if waits := person_wait_words(control.robot.waits_for, shown.name):
+        words = f"{words} {waits}".strip() if control.obeys is not None else waits
     if not words and planned is not None and planned.looking:
         words = text.looks_words(shown.name(planned.looking), world.activity.object)
     elif not words and found is not None:
