@@ -253,6 +253,7 @@ class LiveScreen(LiveStaff):
                 going=going,
                 over=self.at_rest,
                 cards=self._has_cards,
+                claims=bool(self._workspace.activity.rules.claim),
                 tells=self.world.eyes is not None,
                 now=self._shows_now,
                 joining=self.control.joined,

@@ -46,7 +46,7 @@ BINDINGS: list[BindingType] = [
 ]
 
 
-CARDS_ONLY, FACTS_ONLY = ("call_again", "void_call", "whose_card"), ("tell",)
+CARDS_ONLY, FACTS_ONLY = ("call_again", "void_call", "whose_card", "speed"), ("tell",)
 """Actions only for activities with cards, and only for declared activities."""
 
 
@@ -55,6 +55,7 @@ def keys(
     going: bool,
     over: bool = False,
     cards: bool = True,
+    claims: bool = True,
     tells: bool = False,
     now: bool = True,
     joining: bool = False,
@@ -71,7 +72,7 @@ def keys(
     return (
         "pause" if going else "pause:go on", "stop",
         *(("tell",) if tells or not cards else ()),
-        *(("claim",) if cards else ()), "why", "command",
+        *(("claim",) if claims else ()), "why", "command",
         *(("slower", "faster") if cards else ()), "autonomy",
         *(("undo:take back",) if cards else ()), *(("presence",) if cards else ()), "messages",
         *(("call_again",) if cards else ()), "ask_for", "take_over", "drive", "inside",

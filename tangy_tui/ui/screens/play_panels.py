@@ -299,7 +299,9 @@ class PlayPanels(TangyScreen[Tally]):
             self._tell_now(said, "dim")
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable the talk key if there is no push-to-talk."""
+        """Disable talking without push-to-talk, and claims in an activity without them."""
+        if action == "claim":
+            return bool(self._workspace.activity.rules.claim)
         hearing = hearing_of(self.app)
         return action != "talk" or (hearing is not None and hearing.by_key)
 

@@ -78,10 +78,10 @@ class StaffPanel(RowView, can_focus=True):
     StaffPanel { scrollbar-gutter: auto; scrollbar-size-vertical: 0; }
     """
     HELP = (
-        "What Tangy said last, what it does next and why, the last call, the pattern to play for, "
-        "the time, the pace, and each person: how long they have waited, and when Tangy last "
-        "visited them. If there are more people than lines, up and down scroll; Home, Esc or the "
-        "next step leads back."
+        "What Tangy said last, what it does next and why, the time, and each person: how long they "
+        "have waited, and when Tangy last visited them. If numbers are called, also the last call, "
+        "the pattern to play for, and the pace. If there are more people than lines, up and down "
+        "scroll; Home, Esc or the next step leads back."
     )
 
     def __init__(self) -> None:
