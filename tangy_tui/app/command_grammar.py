@@ -75,42 +75,6 @@ FIXED: dict[str, GameCommand] = {
 }
 """Complete commands; help shows the first wording of each."""
 
-MEANINGS: tuple[tuple[str, str], ...] = (
-    ("stop", "the robot stands at once; so does any sentence that aims at it"),
-    ("pause", "nothing more is done after what is done now"),
-    ("go on", "goes on after a pause or a stop"),
-    ("step", "does one thing, and pauses"),
-    ("take over", "you say what Tangy does next: then type it in words"),
-    ("give back", "Tangy goes on by itself after all"),
-    ("autonomy alone", "Tangy does everything by itself; or: unsure, each (it asks you first)"),
-    ("call again", "says the last number once more"),
-    ("take back", "the last number counts as not called"),
-    ("take back B-5", "counts B-5 as not called"),
-    ("pace 20", "calls every 20 s; or: faster, slower"),
-    ("plan 20 minutes", "you play for 20 minutes from now; or: 10 more minutes, plan until 15:40"),
-    ("how long", "says how long you have played, and when the planned time is over"),
-    ("check 17", "checks card 17 against all calls; check 17 Rosa says whose it is"),
-    ("NAME has card 17", "tells Tangy whose card it is, so that a claim names the person"),
-    ("people, cards", "says who is here, with their seats and waits, and whose card is whose"),
-    ("play for NAME, NAME", "the patterns to play for next, in order; patterns lists them"),
-    ("several winners", "everybody with the pattern at the same call wins; or: one winner"),
-    ("visits on", "also visits people who do not ask; or: visits off"),
-    ("here NAME, left NAME", "somebody has come, or has left"),
-    ("add NAME", "a new person joins; on a seat: add NAME on seat 3; only for today: guest NAME"),
-    ("help NAME, ask for NAME", "sends Tangy to somebody who cannot ask"),
-    ("why not NAME", "says when Tangy goes to somebody, and why not now; ask in any words"),
-    ("NAME: B", "tells Tangy what a person answers or does, in activities such as a quiz"),
-    ("answer: B", "the same for the person the game is waiting for"),
-    ("void NAME", "the last response of somebody does not count"),
-    ("drive left 2", "drives by hand for 2 s: forward, back, left, right"),
-    ("where, why", "says what Tangy sees; what it does now, why, and who waits"),
-    ("what, faults", "says what to do about a fault, and all faults of this game"),
-    ("seen, expert, reached, clear", "about a fault that halts Tangy"),
-    ("wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, called, over"),
-    ("end", "ends the game"),
-)
-"""The commands that help lists, with their meanings."""
-
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
 _TOLD = re.compile(r"(.{1,60}?)(:| says| answers| answered) (\S.*)", re.I)

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.declared.judging import CERTAIN
 from tangy_profiles.declared.typed_observations import sayable
+from tangy_profiles.planned_game import as_planned
+from tangy_profiles.present_moment import as_present
 from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import (
     LONGEST_DRIVE,
@@ -74,6 +76,20 @@ class RobotControls:
     def there(self) -> bool:
         """Whether there is a robot, or its bench."""
         return self._robot is not None
+
+    @property
+    def takes_reports(self) -> bool:
+        """Whether staff report what people answer or do, or the state of their cards."""
+        robot = self._robot
+        return robot is not None and (robot.eyes is not None or as_present(robot) is not None)
+
+    @property
+    def reportable(self) -> tuple[str, ...]:
+        """What staff can report now, with examples."""
+        if self._robot is not None and self._robot.eyes is not None:
+            return tuple(self._robot.eyes.sayable)
+        now = as_present(self._robot)
+        return () if now is None else tuple(sayable(now.ahead))
 
     def hold_calls(self, *, held: bool) -> None:
         """Hold the count-down to the next call, or let it go on."""
@@ -161,6 +177,8 @@ class RobotControls:
                 return self._give_card(robot, person, card)
             case Drive():
                 return self._drive(robot, command)
+        if as_planned(robot) is None:
+            return StaffNote("no cards")
         if not robot.called:
             return StaffNote("nothing called")
         label = robot.activity.deck.label(robot.called[-1])
@@ -181,7 +199,7 @@ class RobotControls:
 
     def _give_card(self, robot: LiveWorld, person: str, card: int) -> StaffNote:
         """Note whose card it is, and who had it until now as far as Tangy knew."""
-        if not robot.activity.deck.columns:
+        if as_planned(robot) is None:
             return StaffNote("no cards")
         if person not in robot.people:
             return StaffNote("not playing", person)

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from difflib import get_close_matches
 
+from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import NO_RULES, GameRules
-from tangy_tui.app.command_grammar import FIXED
+from tangy_tui.app.command_grammar import FIXED, read_command
+from tangy_tui.app.inquiry_grammar import read_inquiry
+from tangy_tui.app.offered import EVERYTHING, Need, needs_of
 from tangy_tui.app.plan_grammar import CHECK
 
 NEAR = 0.75  # least similarity of a whole line: some commands move the robot
 NEAR_WORD = 0.8  # least similarity of a word
 MOST = 3
 """The most suggestions."""
+BEGUN = ("autonomy", "drive")
+"""The beginnings of commands that have to go on."""
 
 COMMANDS: dict[str, tuple[str, ...]] = {
     "slower": ("slow", "slower", "slowly"),
@@ -53,12 +58,15 @@ PLAIN_NUMBERS = {"pace {number}": 20, "{claim} {number}": 17}
 def nearest_command(text: str) -> str:
     """Return the command most similar to some words, "" if none is close."""
     words = text.casefold().strip()
-    close = get_close_matches(words, [*FIXED, "stop", "autonomy", "drive"], 1, NEAR)
+    close = get_close_matches(words, [*FIXED, "stop", *BEGUN], 1, NEAR)
     return close[0] if close else ""
 
 
 def nearest_commands(
-    text: str, names: Sequence[str] = (), rules: GameRules = NO_RULES
+    text: str,
+    names: Sequence[str] = (),
+    rules: GameRules = NO_RULES,
+    offers: Collection[Need] = EVERYTHING,
 ) -> tuple[str, ...]:
     """Return commands that words may mean, the likeliest first; () if none is close.
 
@@ -66,11 +74,21 @@ def nearest_commands(
         text: the words that are no command.
         names: the names of the people.
         rules: the choices that the activity gives staff.
+        offers: what the game has; commands that need something else are left out.
     """
-    claim = rules.claim or CHECK
-    found = [nearest_command(text), *_hinted(text, names, claim)]
-    allowed = [one for one in found if one and (rules.claim or not one.startswith(claim))]
-    return tuple(dict.fromkeys(allowed))[:MOST]
+    found = dict.fromkeys((nearest_command(text), *_hinted(text, names, rules.claim or CHECK)))
+    return tuple(one for one in found if _is_offered(one, rules, offers))[:MOST]
+
+
+def _is_offered(near: str, rules: GameRules, offers: Collection[Need]) -> bool:
+    """Return whether a game takes what would be suggested."""
+    try:
+        command = read_command(near, str, rules=rules)
+    except TangyError:  # such as a pace that is too long
+        return False
+    if command is None:
+        return near in BEGUN or read_inquiry(near) is not None
+    return needs_of(command) <= {*offers}
 
 
 def _hinted(text: str, names: Sequence[str], claim: str) -> Iterator[str]:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.command_grammar import ANSWERS, MEANINGS
+from tangy_profiles.reading import plain
+from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.game_moment import game_moment
 from tangy_tui.app.inquiry_grammar import (
@@ -16,7 +17,8 @@ from tangy_tui.app.inquiry_grammar import (
     read_question,
 )
 from tangy_tui.app.keymap import BY_ID
-from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.offered import offered
+from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.time_grammar import asks_time
 from tangy_tui.monitoring.earlier import EarlierPart
 from tangy_tui.text.calls import waits_line
@@ -24,6 +26,7 @@ from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, person_wait_words, proposal_words
 from tangy_tui.text.earlier import earlier_fault_lines, earlier_lines
 from tangy_tui.text.faults import HALTED, advice_lines
+from tangy_tui.text.game_help import help_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.messages import NONE_YET
 from tangy_tui.text.planned_time import time_lines, time_words
@@ -34,12 +37,11 @@ from tangy_tui.text.staff_lines import (
     ANSWER_IN_WORDS,
     NOTHING_WRONG,
     SAY_IN_WORDS,
+    not_known,
     nothing_to,
 )
 from tangy_tui.text.staff_view import person_words
 from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, held_words, why_now_lines
-
-HELP = "You can type at any time:"
 
 
 class Inquiries:
@@ -95,7 +97,8 @@ class Inquiries:
                 return [patterns_line(self._game.world)]
         if word in WHO_IS_HERE:
             people = enumerate(self._controller.view().people, 1)
-            return [f"{seat}. {self._name(one.id)}: {person_words(one)}" for seat, one in people]
+            told = ((seat, self._name(one.id), person_words(one)) for seat, one in people)
+            return [f"{seat}. {': '.join(filter(None, words))}" for seat, *words in told]
         if word in WHOSE_CARDS:
             return [cards_line(self._game.world, self._name)]
         if word == BY_ID["messages"].word:
@@ -107,6 +110,13 @@ class Inquiries:
         if word in ("undo", "redo"):
             return [nothing_to(word)]
         return None
+
+    def unknown(self, text: str) -> str:
+        """Tell that a line is nothing that can be typed here, and suggest similar commands."""
+        world = self._game.world
+        names, rules = [*map(self._name, world.people)], world.activity.rules
+        near = nearest_commands(text, names, rules, offered(self._controller))
+        return plain(not_known(text[:60], ", or ".join(near)))
 
     def _nothing_wrong(self) -> list[str]:
         """Tell that nothing is wrong, and what holds the game if something does."""
@@ -138,14 +148,14 @@ class Inquiries:
     def _help(self) -> list[str]:
         if (verifying := self._controller.answers.verifying) is not None:
             return answer_help(verifying)
-        claim = self._game.world.activity.rules.claim or CHECK
-        own = [line.replace(f"{CHECK} 17", f"{claim} 17") for line in map(": ".join, MEANINGS)]
-        meanings = [f"  {line}" for line in own]
+        activity, answers = self._game.world.activity, self._controller.robot.reportable
+        offers = offered(self._controller)
+        lines = help_lines(offers, activity.rules.claim, next(iter(answers), ""))
         if self._game.question is None:
-            return [HELP, *meanings, SAY_IN_WORDS]
-        known = self._game.world.activity.behaviours.values()
+            return [*lines, SAY_IN_WORDS]
+        known = activity.behaviours.values()
         spoken = [f"  {one.question}: say {one.phrases[0]!r}" for one in known]
-        return [ANSWER_IN_WORDS, *spoken, HELP, *meanings]
+        return [ANSWER_IN_WORDS, *spoken, *lines]
 
     def _where(self) -> str:
         world = self._game.world

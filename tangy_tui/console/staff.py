@@ -18,7 +18,6 @@ from typing import TypeAlias
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import command_reader, read_answer
 from tangy_tui.app.freeze_watch import FreezeWatch
 from tangy_tui.app.game_commands import (
@@ -34,7 +33,6 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.scripted_staff import go_on_by_script
-from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.answering import AnsweredQuestions
 from tangy_tui.console.confirming import ConfirmingStaff
@@ -374,9 +372,7 @@ class StaffLines:
         elif self._game.question is not None:
             self._telling.tell([controller.answers.say(Say(text))])
         else:
-            world = self._game.world
-            near = nearest_commands(text, [*map(self._name, world.people)], world.activity.rules)
-            self._telling.write(plain(staff_lines.not_known(text[:60], ", or ".join(near))))
+            self._telling.write(self._inquiries.unknown(text))
 
     def _take_reply(self, reply: ControllerOutput | Confirm | str) -> None:
         if isinstance(reply, str):

@@ -102,9 +102,9 @@ def cards_line(world: World, name: Name) -> str:
     """Tell whose card is whose, as far as Tangy knows."""
     if not isinstance(world, PlannedGame) or not world.activity.deck.columns:
         return "This activity has no cards."
-    known = [f"{name(person)} {card}" for person, card in world.known_cards.items()]
+    known = [f"{name(person)} has card {card}" for person, card in world.known_cards.items()]
     unknown = [name(person) for person in world.people if person not in world.known_cards]
-    told = f"Cards: {', '.join(known)}." if known else "Tangy does not know whose card is whose."
+    told = f"{', '.join(known)}." if known else "Tangy does not know whose card is whose."
     if not unknown:
         return told
     others = "Tell Tangy the others" if known else "Tell Tangy"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tangy_profiles.game_rules import GameRules
 from tangy_profiles.reading import plain
 
 TITLE = "What do you want to do?"
@@ -41,16 +40,6 @@ def whose_words(card: int, *, all_known: bool) -> str:
 def has_card_words(card: int | None) -> str:
     """Tell which card a person has; "" if it is not known."""
     return "" if card is None else f"has card {card}"
-
-
-def example_words(rules: GameRules) -> str:
-    """Give examples of commands, and name the key that explains what Tangy does."""
-    claim = f", {rules.claim} 17" if rules.claim else ""
-    patterns = f", play for {rules.patterns[-1].name}" if rules.patterns else ""
-    return (
-        f"For example: pace 20{claim}{patterns}, take back, left Rosa, help Rosa. To see what "
-        "Tangy does and why: type why, or press {why} without this line. Or ask: why not Rosa."
-    )
 
 
 def claim_words(word: str) -> str:

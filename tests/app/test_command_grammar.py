@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import COMMAND_WORDS
-from tangy_tui.app.command_grammar import FIXED, MEANINGS, read_answer, read_command, read_help
+from tangy_tui.app.command_grammar import FIXED, read_answer, read_command, read_help
 from tangy_tui.app.game_commands import (
     AUTONOMY,
     DIRECTIONS,
@@ -39,6 +39,7 @@ from tangy_tui.app.screen_grammar import Perform, read_screen
 from tangy_tui.app.teaching_grammar import AgainFrom, Leave, read_teaching
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.learning.verification import Reply, StopCommand
+from tangy_tui.text.game_help import ROWS
 
 BINGO = load_activity("bingo")
 LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
@@ -119,7 +120,7 @@ def test_every_command_has_words_and_is_in_the_help() -> None:
                                       "plan 20 minutes")
     }  # fmt: skip
     assert typed == set(get_args(GameCommand)) - {Confirm}  # Confirm has the keys Y and N
-    helped = " ".join(key for key, _ in MEANINGS)
+    helped = " ".join(row.typed for row in ROWS)
     assert all(word in helped for word in ("stop", "pause", "take over", "ask for", "void", "end"))
 
 
@@ -222,7 +223,7 @@ def test_messages_are_asked_for_by_their_word() -> None:
 
 
 def test_no_command_of_staff_begins_with_a_word_that_may_be_a_claim() -> None:
-    listed = [part for words, _ in MEANINGS for part in re.split(r"[,;] ", words)]
+    listed = [part for row in ROWS for part in re.split(r"[,;] ", row.typed)]
     commands = [*FIXED, *listed, *INQUIRIES, *WHO_IS_HERE, *WHOSE_CARDS, "stop"]
     first = {one.split()[0].strip(":,") for one in commands}
     assert first - COMMAND_WORDS <= {"NAME", "?", CHECK}

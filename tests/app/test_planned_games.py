@@ -269,7 +269,8 @@ def test_help_has_the_word_that_people_call_out(planned: Planned) -> None:
     planned.begin(GamePlan())
     lines = Inquiries(planned.control, str, None, str).lines("help") or []
     claim = planned.workspace.activity.rules.claim
-    assert [line for line in lines if line.startswith(f"  {claim} 17: ")]
+    (line,) = [line for line in lines if line.startswith(f"  {claim} 17: checks card 17")]
+    assert f"; {claim} 17 NAME says" in line
 
 
 def test_staff_read_who_is_here(planned: Planned) -> None:
@@ -282,7 +283,7 @@ def test_staff_read_whose_card_is_whose(planned: Planned) -> None:
     planned.begin(GamePlan())
     name = {"user2": "Emil"}.get
     lines = Inquiries(planned.control, lambda who: name(who, who), None, str).lines("cards")
-    assert lines == ["Cards: user1 1, Emil 2, user3 3, user4 4."]
+    assert lines == ["user1 has card 1, Emil has card 2, user3 has card 3, user4 has card 4."]
 
 
 def test_a_call_that_is_taken_back_returns_and_is_announced(planned: Planned) -> None:

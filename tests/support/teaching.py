@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
+from tangy_tui.app.training import learn
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Executed
 from tangy_tui.learning.teaching_session import TeachingSession
@@ -56,3 +61,12 @@ def taught_until(workspace: Workspace, stage: str) -> TeachingSession:
     while not teaching.demonstration.steps or teaching.demonstration.steps[-1].state.stage != stage:
         teaching.apply(teacher.command())
     return teaching
+
+
+def taught_policy(workspace: Workspace) -> Policy:
+    """Let the scripted teacher show one game of a workspace, and learn from it."""
+    teaching = workspace.teaching("scripted", 1)
+    teaching.begin()
+    deque(ScriptedTeacher(teaching).demonstrate(), maxlen=0)
+    learn(workspace)
+    return load_policy(workspace.store, workspace.activity)[0]

@@ -35,7 +35,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.inquiry_grammar import Question
 from tangy_tui.app.joining import NEW, Admission
-from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.offered import offered
 from tangy_tui.app.screen_grammar import Perform
 from tangy_tui.app.similar_commands import nearest_commands
 from tangy_tui.app.staff_notes import REFUSALS, Proposal, StaffNote
@@ -47,6 +47,7 @@ from tangy_tui.learning.verification import Verified
 from tangy_tui.text.confirmations import called_meanwhile, calling_words, confirmation_words
 from tangy_tui.text.control import ACCEPT, NOT_ACCEPTABLE, confirmed_words, noted_words
 from tangy_tui.text.freezes import DETAIL, GO_ON, STAY, question
+from tangy_tui.text.game_help import example_words
 from tangy_tui.text.typed_commands import (
     CLAIM,
     IS_AWAY,
@@ -55,7 +56,6 @@ from tangy_tui.text.typed_commands import (
     TITLE,
     WHO_IS_HERE,
     claim_words,
-    example_words,
 )
 from tangy_tui.text.watching import stopped_by_guest
 from tangy_tui.ui.base import can_perform, perform
@@ -240,19 +240,19 @@ class PlayStaff(PlayAnswers):
 
     def action_claim(self) -> None:
         """Let staff type the number of a card to check, or a name."""
-        word = self._workspace.activity.rules.claim or CHECK
+        word = self._workspace.activity.rules.claim
         self._ask_command(f"{word} ", (CLAIM, claim_words(word)))
 
     def _ask_command(self, begun: str, asked: tuple[str, str] | None = None) -> None:
         """Ask staff for a command; `asked` is the question, and its explanation."""
         activity = self._workspace.activity
-        names = [*self._workspace.names.values()]
+        names, offers = [*self._workspace.names.values()], offered(self.control)
         read = command_reader(activity, self.id_of)
         dialog = CommandDialog(
             lambda typed: read_typed(typed, read, self.id_of, lambda id: can_perform(self, id)),
             begun,
-            *(asked or (TITLE, self._told(example_words(activity.rules)))),
-            lambda typed: nearest_commands(typed, names, activity.rules),
+            *(asked or (TITLE, self._told(example_words(activity.rules, offers)))),
+            lambda typed: nearest_commands(typed, names, activity.rules, offers),
         )
         typed = self.ask(dialog)
         self.run_worker(self._take_typed(typed), name="type", group="type", exclusive=True)
