@@ -12,6 +12,7 @@ from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.people_guard import FRESH, NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import Track
 from tests.bench.people_arriving import LIMITS, meeting
+from tests.bench.people_drives import drives
 from tests.bench.people_passing import carry_out
 
 TORSO, TICK, LEAST = 0.22, 0.1, 0.2  # m, s, m: the last between robot and torso
@@ -68,3 +69,9 @@ def test_the_robot_stands_before_a_walker_who_comes_out_of_the_blind_sector() ->
     drive, curvature = meeting(162, 91)
     carry_out(drive, curvature, limits=LIMITS)
     assert "ahead" not in [touch.kind for touch in drive.touches]
+
+
+@pytest.mark.slow
+def test_the_robot_reaches_a_goal_beside_a_person_who_stands() -> None:
+    (drive,) = drives("beside", 1, 411301, 8)
+    assert drive.arrived and drive.driven_to >= LEAST

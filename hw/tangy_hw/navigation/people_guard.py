@@ -32,6 +32,7 @@ REACH = 3.0  # metres beyond which people are out of reach while the robot stops
 STEP = 0.1  # seconds between the checked moments
 NEARER = 0.005  # metres by which driving must be worse than stopping, for standing people
 KEPT = 0.22  # metres from a standing person below which driving may not be worse at all
+KEPT_END = 0.2  # the same from a return: its track tells how far the person reaches
 FURTHER, WALKS = 0.01, 0.25  # m by which driving must be better, for walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
 FRESH = 0.5  # seconds for which a new track is assumed to approach fast
@@ -122,7 +123,7 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
     ]
     apart = END + limits.margin
     rows += [
-        (x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0, END + KEPT, False) for x, y in ends
+        (x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0, KEPT_END, False) for x, y in ends
     ]
     table = np.array(rows, dtype=np.float64).reshape(-1, 10)
     return _Bodies(table[:, :2], table[:, 2:4], *table[:, 4:].T)
