@@ -10,11 +10,13 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import FaultDiagnosed
+from tangy_profiles.health import OK, Reading
 from tangy_tui.app.game_commands import CallAgain, EndGame, GoOn, Pause, StopRobot, TakeOver
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.game_events import Acted
+from tangy_tui.interaction.game_events import Acted, GameEnded
 from tangy_tui.learning.verification import Reply, Say, Verified
+from tests.app.test_halted_clock import report
 from tests.app.test_interruption import Robot
 
 
@@ -110,3 +112,33 @@ def test_a_command_that_the_end_of_the_game_interrupts_says_so(robot: Robot) -> 
 
     robot.link.ask = asked  # type: ignore[assignment]
     assert robot.control.apply(CallAgain()) == [StaffNote("ends")]
+
+
+@pytest.mark.parametrize(
+    ("before", "why"),
+    [
+        ("plays", "It was left before its end."),
+        ("took over", "It was left before its end."),
+        ("asks", "Nobody has shown that. What now?"),
+        (
+            "halted",
+            "Tangy was halted. Emergency stop pressed: Somebody pressed the emergency stop.",
+        ),
+    ],
+)
+def test_the_log_says_in_which_state_staff_ended_a_game(
+    robot: Robot, before: str, why: str
+) -> None:
+    control = robot.control
+    robot.next(2)
+    match before:
+        case "took over":
+            control.apply(TakeOver())
+            control.next()
+        case "asks":
+            control.supervision.game.ask("Nobody has shown that.", "What now?", "")
+        case "halted":
+            report(robot, Reading("stop_button", 0.0, OK, {"latched": True}))
+            control.next()
+    told = control.apply(EndGame())
+    assert [one.stopped for one in told if isinstance(one, GameEnded)] == [why]
