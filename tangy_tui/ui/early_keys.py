@@ -1,4 +1,9 @@
-"""Keeps keys that were typed for a dialog until its line or its list can take them."""
+"""Keeps keys that were typed for a dialog until its line or its list can take them.
+
+This is the second half of what `KeyReader` begins, and it takes both: the reader opens the dialog
+before it reads the next key, since a key that opens nothing keeps none, and a dialog that is open
+has the focus only later.
+"""
 
 from __future__ import annotations
 
