@@ -13,6 +13,8 @@ from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.monitoring.supervision import Supervision
 
 HALF_DAY = timedelta(hours=12)
+SOON = timedelta(hours=6)
+"""Staff who name a time of day that is over mean the afternoon or tomorrow, if it is that soon."""
 
 
 class PlannedTime:
@@ -75,15 +77,28 @@ def planned_end(command: PlanTime, now: datetime, before: datetime | None) -> da
         TangyError: that time has passed.
     """
     if command.until is not None:
-        hour, minute = command.until
         local = now.astimezone()
-        ends = local.replace(hour=hour, minute=minute, second=0, microsecond=0)
-        if local - ends > HALF_DAY:
-            ends += timedelta(days=1)
-        if ends <= local:
+        if (ends := _next(command.until, local)) is None:
             raise TangyError(f"It is {local:%H:%M} already. Plan a later time.")
         return ends
     if not command.minutes:
         return None
     begins = max(now, before or now) if command.more else now
     return begins + timedelta(minutes=command.minutes)
+
+
+def _next(time: tuple[int, int], now: datetime) -> datetime | None:
+    """Return when it is some time of day next, in which 3:30 may be in the afternoon; None: it was.
+
+    Args:
+        time: the hour and the minute.
+        now: the local time.
+    """
+    hour, minute = time
+    ends = now.replace(hour=hour, minute=minute, second=0, microsecond=0)
+    if ends > now:
+        return ends
+    later = [ends + timedelta(days=1)]
+    if 1 <= hour < 12:
+        later.insert(0, ends + HALF_DAY)
+    return next((one for one in later if timedelta(0) < one - now <= SOON), None)

@@ -229,6 +229,30 @@ def test_a_time_of_day_is_the_next_one_and_never_a_past_one() -> None:
 
 
 @pytest.mark.parametrize(
+    ("now", "until", "minutes"),
+    [((14, 0), (3, 30), 90), ((11, 45), (1, 0), 75), ((9, 30), (10, 15), 45),
+     ((14, 0), (15, 30), 90)],
+)  # fmt: skip
+def test_a_time_of_day_may_be_in_the_afternoon(
+    now: tuple[int, int], until: tuple[int, int], minutes: int
+) -> None:
+    then = datetime(2026, 3, 2, *now).astimezone()
+    ends = planned_end(PlanTime(until=until), then, None)
+    assert ends is not None and ends - then == timedelta(minutes=minutes)
+
+
+@pytest.mark.parametrize(
+    ("now", "until"), [((16, 0), (3, 30)), ((10, 0), (9, 30)), ((14, 0), (0, 10))]
+)
+def test_a_time_of_day_that_was_is_not_one_of_tomorrow(
+    now: tuple[int, int], until: tuple[int, int]
+) -> None:
+    then = datetime(2026, 3, 2, *now).astimezone()
+    with pytest.raises(TangyError, match="already"):
+        planned_end(PlanTime(until=until), then, None)
+
+
+@pytest.mark.parametrize(
     "said",
     ["how long", "how long is left?", "When does it end?", "how much time do we have left", "time",
      "when is the game over", "until when do we play", "how long have we played so far"],
