@@ -40,9 +40,10 @@ class GameLog:
 
     def session_time(self, game: str) -> SessionTime | None:
         """Return the planned time of the session of a game; None if no such game has begun."""
-        if game not in self._times and (found := session_time(self._store, game)) is not None:
-            self._times = {game: found}
-        return self._times.get(game)
+        times = self._times  # another thread may plan meanwhile, and begin new ones
+        if game not in times and (found := session_time(self._store, game)) is not None:
+            times[game] = found
+        return times.get(game)
 
     def plan_time(self, game: str, ends: datetime | None, by: str, *, timed: bool) -> None:
         """Log until when staff plan the session of a game; None: without a limit.

@@ -13,14 +13,16 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
-from tangy_profiles.session_time import session_time
+from tangy_profiles.session_time import SessionTime, session_time
 from tangy_profiles.staff_records import StaffAction
+from tangy_profiles.store import Store
 from tangy_tui.app.game_commands import EndGame, GoOn, Pause, PlanTime
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.planned_time import planned_end
 from tangy_tui.app.time_grammar import asks_time, read_time
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.interaction import game_log
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.text.control import noted_words
@@ -250,6 +252,25 @@ def test_a_time_of_day_that_was_is_not_one_of_tomorrow(
     then = datetime(2026, 3, 2, *now).astimezone()
     with pytest.raises(TangyError, match="already"):
         planned_end(PlanTime(until=until), then, None)
+
+
+def test_a_plan_made_while_the_time_is_read_counts(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    control = session(workspace).control
+    game, log = control.supervision.game.game, control.supervision.game.log
+
+    def read(store: Store, game: str) -> SessionTime | None:
+        before = session_time(store, game)
+        monkeypatch.setattr(game_log, "session_time", session_time)
+        log.plan_time(game, None, "ann", timed=False)  # by another thread
+        return before
+
+    control.time.plan(PlanTime(20))
+    monkeypatch.setattr(game_log, "session_time", read)
+    log.session_time(game)
+    again = log.session_time(game)
+    assert again is not None and again.ends is None
 
 
 @pytest.mark.parametrize(
