@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from tangy_hw.device_protocols import DeviceFailed
 from tangy_profiles.known_devices import can_be_left_out, left_out
+from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.language.answers import yes_or_no
 from tangy_tui.text.missing_devices import go_on_without, without_words
 
@@ -54,7 +55,8 @@ def leaves_out(
         return False
     write(without_words(robot, error.device, workspace.activity, str(error)))
     write(f"{go_on_without(robot, error.device)} (y/n)")
-    if yes_or_no(read() or "") is not True:
+    said = (read() or "").strip().casefold()
+    if ANSWERS.get(said, yes_or_no(said)) is not True:
         return False
     workspace.robot = left_out(robot, error.device)
     return True

@@ -28,16 +28,19 @@ def switched_on(
     )
 
 
-def test_staff_at_the_lines_go_on_without_a_device_that_blocks(workspace: Workspace) -> None:
+@pytest.mark.parametrize("answer", ["y", "Yes", "yes please"])
+def test_staff_at_the_lines_go_on_without_a_device_that_blocks(
+    workspace: Workspace, answer: str
+) -> None:
     told: list[str] = []
-    with switched_on(workspace, "arms", "yes", told) as robot:
+    with switched_on(workspace, "arms", answer, told) as robot:
         assert robot == "on"
     assert [device.name for device in workspace.robot.undriven] == ["arms"]
     assert "has not started within 27 s" in told[0] and "Tangy makes no gestures" in told[0]
     assert told[1] == "Go on without the arms? (y/n)"
 
 
-@pytest.mark.parametrize("answer", ["no", "", None])
+@pytest.mark.parametrize("answer", ["n", "no", "", "what", None])
 def test_without_a_yes_the_robot_stays_off(workspace: Workspace, answer: str | None) -> None:
     with pytest.raises(DeviceFailed), switched_on(workspace, "arms", answer, []):
         pass
