@@ -37,6 +37,7 @@ class PausingGames(JoiningGames):
 
     def _pause(self, *, unasked: bool) -> list[Result]:
         before, self.going, self.paused_itself = self.going, False, unasked
+        self.single = False  # that step is not wanted any more
         self.goes_on = self.goes_on and not self.joined
         self._stands(did=before and not unasked)
         return [StaffNote("paused")]
@@ -104,7 +105,7 @@ class PausingGames(JoiningGames):
         self._watch.go_on()
         if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
-        self.going, self.paused_itself = True, False
+        self.going, self.single, self.paused_itself = True, False, False
         self.goes_on = self.goes_on or self.joined
         if (fault := self.supervision.halted) is not None:
             return [StaffNote("still halted", fault.name)]

@@ -11,7 +11,15 @@ import pytest
 from tangy_profiles.past_game import PastGame, interrupted_game
 from tangy_profiles.scene import Scene
 from tangy_profiles.staff_records import StaffAction
-from tangy_tui.app.game_commands import GoOn, OneStep, Pause, StopRobot
+from tangy_tui.app.game_commands import (
+    GameCommand,
+    GiveBack,
+    GoOn,
+    OneStep,
+    Pause,
+    StopRobot,
+    TakeOver,
+)
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
@@ -120,6 +128,22 @@ def test_a_stop_is_named_by_the_last_onlooker_who_stopped_and_logged_at_each_con
     robot.control.apply(GoOn())
     robot.control.apply(StopRobot())
     assert robot.control.stopped_by == ""
+
+
+@pytest.mark.parametrize(
+    "instead",
+    [[GoOn()], [Pause(), GoOn()], [StopRobot(), GoOn()], [TakeOver(), GiveBack()]],
+)
+def test_a_single_step_that_staff_did_not_wait_for_pauses_no_game_later(
+    workspace: Workspace, instead: list[GameCommand]
+) -> None:
+    robot = Robot(workspace)
+    robot.next(2)
+    for command in (Pause(), OneStep(), *instead):  # before Tangy's next step
+        robot.control.apply(command)
+    called = len(robot.world.called)
+    robot.next(3)
+    assert robot.control.phase == "running" and len(robot.world.called) == called + 3
 
 
 def test_a_pause_that_the_log_does_not_end_lasts_until_the_next_step_after_a_resume() -> None:
