@@ -12,6 +12,7 @@ from tangy_profiles.declared.model import PAUSE_SECONDS
 from tangy_profiles.declared.situation_words import seen_words
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.state import EVERYBODY, ActivityState
+from tangy_tui.text.names import turn_words
 from tangy_tui.text.numbers import counted, listed
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def facts_words(
     turn = dict(state.whom).get("whose turn")
     seen = seen_words(activity.declaration, state.situation)
     return [
-        *([f"It is {name(turn)}'s turn."] if turn is not None else []),
+        *([f"{turn_words(name(turn))}."] if turn is not None else []),
         *([f"{seen[:1].upper()}{seen[1:]}."] if seen else []),
     ]
 

@@ -9,6 +9,12 @@ if TYPE_CHECKING:
     from tangy_tui.language.name_pronunciation import HowSaid
 
 
+def turn_words(name: str) -> str:
+    """Tell whose turn it is: a person's, or a team's, whose name may be a plural."""
+    whose = f"{name}'" if name.endswith("s") else f"{name}'s"
+    return f"It is {whose} turn"
+
+
 def renamed(person: str, name: str) -> str:
     """Tell a person's new name."""
     return f"{person} is now called {name}."

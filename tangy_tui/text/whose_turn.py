@@ -17,6 +17,7 @@ from tangy_tui.text.control import (
     stopped_words,
 )
 from tangy_tui.text.joining import sets_up_words
+from tangy_tui.text.names import turn_words
 from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import moment_words
 from tangy_tui.text.staff_view import (
@@ -149,7 +150,7 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
         return "Nobody has shown Tangy what to do next, so it will ask you.", ""
     following = _next_words(activity, decision, state, name)
     if moment.turns:
-        return f"It is {name(moment.turns[0])}'s turn. {following}", ""
+        return f"{turn_words(name(moment.turns[0]))}. {following}", ""
     if near is not None and near.turn and not behaviour.visits:
         there = f"Tangy is with {name(near.id)}{_because(moment, near, name)}."
         return f"{there} {following}", near.id
@@ -360,7 +361,7 @@ def _turn_words(turn: PersonTurn, name: Name) -> str:
         return "In this activity Tangy goes to nobody, and nobody has a turn."
     place = turns.index(turn.person.id)
     if place == 0:
-        return f"It is {who}'s turn now."
+        return f"{turn_words(who)} now."
     between = _names([name(one) for one in turns[1:place]])
-    first = f"It is {name(turns[0])}'s turn now."
+    first = f"{turn_words(name(turns[0]))} now."
     return f"{first} {f'After that {between}, then' if between else 'Then comes'} {who}."

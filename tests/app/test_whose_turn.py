@@ -524,6 +524,8 @@ def test_in_a_game_with_turns_the_order_of_turns_is_told() -> None:
     ]
     turn = PersonTurn(ben, GameMoment(turns=("ann", "ben")))
     assert text.turn_lines(turn, str.title, None) == ["It is Ann's turn now. Then comes Ben."]
+    turn = PersonTurn(ben, GameMoment(turns=("reds", "ben")))
+    assert text.turn_lines(turn, str.title, None) == ["It is Reds' turn now. Then comes Ben."]
     waits = PersonTurn(replace(ben, turn=1, waits=42.0), GameMoment(turns=("ann", "ben")))
     assert text.turn_lines(waits, str.title, None)[0] == "Ben asked 40 s ago."
     turn = PersonTurn(ben, GameMoment())
