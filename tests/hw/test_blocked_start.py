@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceFailed
 from tangy_hw.robot_client import client, starting
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.known_devices import can_be_left_out, left_out
 from tangy_profiles.robot import load_robot
+from tests.support.waiting import wait_until
 
 GRIPPER = """
 [[devices]]
@@ -74,3 +77,21 @@ def test_a_robot_can_do_without_its_arms_but_not_without_what_it_drives_by() -> 
     without = left_out(robot, "arms")
     assert "arms" not in without.devices
     assert [device.name for device in without.undriven] == ["arms"]
+
+
+@pytest.mark.slow
+def test_staff_leave_a_robot_off_while_a_driver_blocks(
+    setup: RobotSetup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(client, "CHILD", (sys.executable, str(ROBOT), "start"))
+    cancellation = Cancellation()
+    link = RobotLink(setup, cancellation=cancellation)
+    with ThreadPoolExecutor(1) as thread:
+        starting_it = thread.submit(link.start)
+        wait_until(lambda: "gripper" in cancellation.parts, "the gripper is being started")
+        cancellation.cancel()
+        with pytest.raises(Cancelled):
+            starting_it.result()
+    link.close()
+    assert link.pid is None
+    assert not (tmp_path / "told.txt").exists()
