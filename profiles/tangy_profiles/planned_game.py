@@ -44,6 +44,8 @@ class PlannedGame:
     patterns: Patterns
     winner = ""
     """The winner, while others are visited before the game continues or ends."""
+    _winners: tuple[str, ...] = ()
+    """Who has won in this game, in order, up to the last win that the game went on after."""
     _asked_before: frozenset[str] | None = None
     """Who asked when somebody won, and has not been visited since; None: nobody has won yet."""
     vouched: frozenset[str] = frozenset()
@@ -78,6 +80,7 @@ class PlannedGame:
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
         self.winner, self.visiting, self.all_called = "", "", False
         self.looking = self.said = ""
+        self._winners = ()
         self._asked_before = None
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
         self._visited, self._row_began = {}, 0.0
@@ -125,6 +128,20 @@ class PlannedGame:
         """The numbers that are being said now, and do not count as called yet."""
         return ()
 
+    @property
+    def has_won(self) -> tuple[str, ...]:
+        """Who has won in this game, in order."""
+        if not self.tracker.finished:
+            return self._winners
+        won = (*self._winners, self._finisher)
+        return tuple(one for one in dict.fromkeys(won) if one in self.people)
+
+    @property
+    def _finisher(self) -> str:
+        """The person with whom the game was finished."""
+        queue, place = self.tracker.queue, self.tracker.place
+        return place if place in queue or not queue else queue[0]
+
     def numbers_on(self, card: int) -> tuple[int, ...] | None:
         """Return the numbers of a card row by row; None if there is no such card."""
         raise NotImplementedError
@@ -163,8 +180,7 @@ class PlannedGame:
         if self._asked_before is not None:
             self._asked_before &= {*tracker.queue} - {tracker.closed}
         if tracker.finished:
-            winner = tracker.place if tracker.place in tracker.queue else tracker.queue[:1]
-            person = winner if isinstance(winner, str) else "".join(winner)
+            person = self._finisher if tracker.queue else ""
             if self.game_plan.several and (self._may_win_as_well(person) or self._unseen):
                 return DueChange("others first", person)
             return DueChange("played on", person) if self.patterns.left else None
@@ -240,6 +256,8 @@ class PlannedGame:
     def change(self, change: GameChange) -> None:
         """Apply a change."""
         person = change.person
+        if change.what in ("others first", "played on") and person:
+            self._winners = tuple(dict.fromkeys((*self._winners, person)))
         match change.what:
             case "patterns chosen":
                 self.patterns.follow_with(change.patterns)

@@ -53,6 +53,8 @@ class GameView:
     """The time between two calls in s; 0: nothing is called."""
     patterns: Sparse[tuple[str, ...]] = ()
     """The labels of the pattern that is played for, and of those that follow."""
+    several: Sparse[bool] = False
+    """Whether everybody who has the pattern at the same call wins."""
     battery: Sparse[float | None] = None
     """The share of the robot's charge, 0 to 1, rounded; null: no device tells it."""
 
@@ -98,6 +100,7 @@ def _view_now(control: GameController) -> GameView | None:
         autonomy=control.autonomy.level,
         pace=seen.pace,
         patterns=_patterns(world),
+        several=supervision.game.changes.plan.several,
         battery=None if (charge := battery_of(world)) is None else round(charge, 2),
     )
 

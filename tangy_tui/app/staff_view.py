@@ -47,6 +47,8 @@ class PersonNow:
     """Whether their card wins by a claim, so that the robot goes there first."""
     calls_first: Sparse[Count] = 0
     """How many numbers are called before the robot goes there."""
+    has_won: Sparse[bool] = False
+    """Whether they have won in this game."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +159,9 @@ class StaffWatch:
 
 
 def _with_plan(person: PersonNow, world: PlannedGame | None) -> PersonNow:
-    """Add why a person who asks is first, or has to wait for some calls."""
+    """Add whether a person has won, and why one who asks is first or has to wait for calls."""
+    if world is not None and person.id in world.has_won:
+        person = replace(person, has_won=True)
     if world is None or not person.turn:
         return person
     calls = world.tracker.calls_first if person.turn == 1 else 0

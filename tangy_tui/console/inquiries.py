@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
+from tangy_profiles.planned_game import as_planned
 from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.app.game_controller import GameController
@@ -40,7 +41,7 @@ from tangy_tui.text.staff_lines import (
     not_known,
     nothing_to,
 )
-from tangy_tui.text.staff_view import person_words
+from tangy_tui.text.staff_view import SEVERAL_WIN, person_words, played_words, won_words
 from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, held_words, why_now_lines
 
 
@@ -165,8 +166,25 @@ class Inquiries:
         robot = self._controller.robot
         going = going_words(robot.going, self._name, robot.lets)
         waits = person_wait_words(robot.waits_for, self._name)
-        told = f"Now: {doing}.", going, waits, f"{seen} ({self._controller.phase})", self._time()
+        told = [f"Now: {doing}.", going, waits, f"{seen} ({self._controller.phase})"]
+        told += [self._plan(), self._time()]
         return " ".join(filter(None, told))
+
+    def _plan(self) -> str:
+        """Tell what the game is played for, whether several can win, and who has won."""
+        if (planned := as_planned(self._game.world)) is None:
+            return ""
+        words, several = played_words(planned.patterns), planned.game_plan.several
+        return " ".join(
+            filter(
+                None,
+                (
+                    f"Played {words}." if words else "",
+                    SEVERAL_WIN if several else "",
+                    won_words([self._name(one) for one in planned.has_won]),
+                ),
+            )
+        )
 
     def _time(self) -> str:
         """Tell the time of a game in which it is the time of the home, not simulated."""

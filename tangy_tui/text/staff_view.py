@@ -48,11 +48,35 @@ def pace_words(view: StaffView) -> str:
     return f"a call every {view.pace:g} s" if view.pace else ""
 
 
+SEVERAL_WINNERS = "several winners"
+"""Short for: everybody who has the pattern at the same call wins."""
+SEVERAL_WIN = "Everybody who has the pattern at the same call wins."
+HAS_WON = "has won"
+
+
 def played_words(patterns: Patterns | None) -> str:
     """Name the pattern to play for, and those that follow."""
     if patterns is None or patterns.present is None:
         return ""
     return labels_words([one.label for one in (patterns.present, *patterns.left)])
+
+
+def played_facts(patterns: Patterns) -> str | tuple[str, ...]:
+    """Tell the same, and in fewer words for less room."""
+    words, more = played_words(patterns), len(patterns.left)
+    if patterns.present is None or not more:
+        return words
+    return words, f"for {patterns.present.label}, then {more} more"
+
+
+def winners_facts(names: Sequence[str]) -> str | tuple[str, ...]:
+    """Tell who has won in this game, or how many if there is no room for their names."""
+    return (f"won: {listed(names)}", f"{len(names)} won") if names else ""
+
+
+def won_words(names: Sequence[str]) -> str:
+    """Tell who has won in this game, in a sentence; "" if nobody has."""
+    return f"{listed(names)} {HAS_WON if len(names) == 1 else 'have won'}." if names else ""
 
 
 def labels_words(labels: Sequence[str]) -> str:
@@ -163,9 +187,9 @@ def person_words(person: PersonNow) -> str:
         case "away":
             return "not here"
         case "visited":
-            return "Tangy is there"
+            return f"Tangy is there, {HAS_WON}" if person.has_won else "Tangy is there"
         case "comes":
-            return "Tangy comes"
+            return f"Tangy comes, {HAS_WON}" if person.has_won else "Tangy comes"
         case "asks":
             known = person.waits is not None and person.waits >= STEP_SECONDS
             waits = f" {lasting_words(person.waits or 0.0)}" if known else ""
@@ -174,14 +198,16 @@ def person_words(person: PersonNow) -> str:
                 FIRST_BY_CLAIM if person.claims else "",
                 f"asks{waits}",
                 f"after {calls}" if person.calls_first else "",
+                HAS_WON if person.has_won else "",
                 seen,
             )
             return ", ".join(filter(None, asked))
         case "plays":
-            told = seen or ("no visit yet" if person.goes_round else "")
+            won = HAS_WON if person.has_won else ""
+            told = seen or ("no visit yet" if person.goes_round and not won else "")
             turn = "has the turn" if person.their_turn else ""
             counts = (f"{name.replace('_', ' ')} {number}" for name, number in person.counts)
-            return ", ".join(filter(None, (turn, *counts, told)))
+            return ", ".join(filter(None, (turn, won, *counts, told)))
         case forgotten:
             assert_never(forgotten)
 

@@ -12,6 +12,7 @@ from tangy_tui.text.faults import status_words
 from tangy_tui.text.planned_time import Fact, time_facts, time_words
 from tangy_tui.text.situations import OVER_NOW, Name
 from tangy_tui.text.staff_view import (
+    SEVERAL_WINNERS,
     labels_words,
     lasting_words,
     tangy_words,
@@ -163,4 +164,6 @@ def facts(view: GameView) -> list[Fact]:
 def _chosen(view: GameView) -> list[str]:
     """Tell what staff have chosen: the pace, the patterns, and how much Tangy does by itself."""
     pace = f"a call every {view.pace:g} s" if view.pace else ""
-    return [pace, labels_words(view.patterns), tangy_words(view.autonomy, view.battery)]
+    several = SEVERAL_WINNERS if view.several else ""
+    tangy = tangy_words(view.autonomy, view.battery)
+    return [pace, labels_words(view.patterns), several, tangy]

@@ -555,6 +555,7 @@ def test_a_visit_counts_on_arrival(planned: Planned) -> None:
         arrived = False
         pace = 0.0
         bound_for = person
+        tracker = planned.world.tracker
 
     (now,) = watch.look(scene, (person,), 6.0, OnItsWay()).people
     assert (now.state, now.unvisited) == ("comes", None)

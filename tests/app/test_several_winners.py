@@ -1,126 +1,86 @@
-"""Several winners: after a win Tangy goes to those who may have won as well, and then it ends."""
+"""While a game runs, staff see whether several can win, and who has won already."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterator
 from pathlib import Path
-from typing import cast
 
 import pytest
 
+from tangy_profiles.cards import winning_state
 from tangy_profiles.game_rules import GamePlan
-from tangy_profiles.state import FRONT
-from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
-from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.game_events import Acted, GameChanged, GameEnded
-from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.supervision import Event
+from tangy_tui.app.game_commands import EndGame
+from tangy_tui.app.game_view import view_of
+from tangy_tui.app.scripted_staff import go_on_by_script
+from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.text.staff_view import (
+    HAS_WON,
+    SEVERAL_WIN,
+    SEVERAL_WINNERS,
+    person_words,
+    winners_facts,
+)
+from tangy_tui.text.watching import now_lines
+from tangy_tui.ui.screens.play_view import ViewSource, show_view
+from tangy_tui.ui.widgets.call_board import CallBoard
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
+from tests.app.test_planned_games import Planned
+
+NAMES = {"user1": "Ann", "user2": "Ben", "user3": "Cleo", "user4": "Dora"}
 
 
-class Won:
-    """A game for twelve people with several winners: one has the pattern, and nobody asks."""
-
-    def __init__(self, folder: Path, learnt: Policy, patterns: tuple[str, ...] = ()) -> None:
-        self.workspace = Workspace(folder, users=12)
-        supervision = self.workspace.supervision(learnt, 31)
-        self.world = cast(SimulatedWorld, supervision.world)
-        self.world.users = replace(self.world.users, miss=0.0, ask=1e-9, slip=0.0)
-        self.world.choose(GamePlan(patterns, several=True))
-        self.supervision = supervision
-        self.control = scripted_controller(supervision)
-        self.events: list[Event] = self.control.begin()
-        while not (
-            won := [p for p, card in self.world.known_cards.items() if self.world.wins(card)]
-        ):
-            self.step()
-        self.winner = won[0]
-        self.others = [person for person in self.world.people if person not in won]
-        """Whose cards do not win."""
-        self.since = len(self.events)
-
-    def ask(self, *people: str) -> None:
-        """Let the winner ask, and then others."""
-        for person in (self.winner, *people):
-            self.world.tracker.ask(person)
-
-    def step(self) -> None:
-        self.events += go_on_by_script(self.control, expert=True)
-
-    def play(self, *, asks: str = "") -> None:
-        """Play on; after the first change a person asks again whenever Tangy is elsewhere."""
-        while not self.supervision.over:
-            if asks and self.changes() and self.world.tracker.place != asks:
-                self.world.tracker.ask(asks)
-            self.step()
-
-    def changes(self) -> list[str]:
-        return [e.what for e in self.events[self.since :] if isinstance(e, GameChanged)]
-
-    def visited(self) -> list[str]:
-        """The people to whom Tangy went after the win, in order."""
-        acted = [event for event in self.events[self.since :] if isinstance(event, Acted)]
-        went = [a.after.place for a in acted if a.after.place not in (FRONT, a.state.place)]
-        assert went.pop(0) == self.winner
-        return went
+@pytest.fixture
+def planned(taught: Path) -> Iterator[Planned]:
+    planned = Planned(taught)
+    yield planned
+    planned.workspace.close()
 
 
-def ended_well(game: Won) -> bool:
-    last = game.events[-1]
-    return isinstance(last, GameEnded) and last.stopped is None
+def won_first(planned: Planned) -> str:
+    """Play until a first person of several has won; return who it is."""
+    planned.begin(GamePlan(("line", "two lines"), several=True))
+    world = planned.world
+    winning = winning_state(planned.workspace.activity.user_states)
+    while world.tracker.seen != winning:
+        planned.events += go_on_by_script(planned.control, expert=True)
+    first = world.tracker.place
+    second = next(person for person in world.people if person != first)
+    world.vouched |= {second}  # their card wins at the same call
+    world.tracker.ask(second)
+    while "others first" not in planned.changes():
+        planned.events += go_on_by_script(planned.control, expert=True)
+    return first
 
 
-def test_those_whose_card_does_not_win_do_not_delay_the_end(taught: Path, learnt: Policy) -> None:
-    game = Won(taught, learnt)
-    game.ask(*game.others[:3])
-    game.play()
-    assert game.changes() == [] and game.visited() == [] and ended_well(game)
-    game.workspace.close()
-
-
-def test_a_person_who_asks_after_the_win_does_not_delay_the_end(
-    taught: Path, learnt: Policy, monkeypatch: pytest.MonkeyPatch
+def test_several_winners_are_told_where_staff_look(
+    planned: Planned, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    game = Won(taught, learnt)
-    monkeypatch.setattr(SimulatedWorld, "known_cards", property(lambda world: {}))
-    first, second, late, *_ = game.others
-    game.ask(first, second)
-    game.play(asks=late)
-    assert game.changes() == ["others first", "won"] and ended_well(game)
-    assert game.visited() == [first, second, game.winner]
-    game.workspace.close()
+    planned.begin(GamePlan(("line",), several=True))
+    facts = list[object]()
+    monkeypatch.setattr(StaffPanel, "show", lambda panel, call, step, told, *_: facts.extend(told))
+    source = ViewSource(planned.world, planned.control, NAMES.__getitem__)
+    show_view(StaffPanel(), CallBoard(planned.world.activity.deck), planned.control.view(), source)
+    assert {"for a line", SEVERAL_WINNERS} <= {*facts}
+    (where,) = Inquiries(planned.control, NAMES.__getitem__, None, str).lines("where") or [""]
+    assert f"Played for a line. {SEVERAL_WIN}" in where
+    view = view_of(planned.control)
+    assert view is not None
+    assert f"{SEVERAL_WINNERS}, for a line" in " ".join(now_lines(view, None, str))
 
 
-def test_a_person_who_asks_again_after_their_visit_does_not_delay_the_end(
-    taught: Path, learnt: Policy, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    game = Won(taught, learnt)
-    monkeypatch.setattr(SimulatedWorld, "known_cards", property(lambda world: {}))
-    first = game.others[0]
-    game.ask(first)
-    game.play(asks=first)
-    assert game.visited() == [first, game.winner] and ended_well(game)
-    game.workspace.close()
+def test_who_has_won_already_is_told(planned: Planned) -> None:
+    first = won_first(planned)
+    (person,) = [one for one in planned.control.view().people if one.has_won]
+    assert person.id == first and HAS_WON in person_words(person)
+    (where,) = Inquiries(planned.control, NAMES.__getitem__, None, str).lines("where") or [""]
+    assert f"{NAMES[first]} {HAS_WON}." in where
+    assert winners_facts([NAMES[first]]) == (f"won: {NAMES[first]}", "1 won")
+    view = view_of(planned.control)
+    assert view is not None and [one.id for one in view.people if one.has_won] == [first]
 
 
-def test_a_card_that_wins_comes_before_the_others_who_ask(taught: Path, learnt: Policy) -> None:
-    game = Won(taught, learnt)
-    loser, claims, *_ = game.others
-    game.ask(loser, claims)
-    game.world.vouched |= {claims}
-    game.play()
-    assert game.visited() == [claims] and ended_well(game)
-    game.workspace.close()
-
-
-def test_the_next_pattern_begins_and_requests_stay(taught: Path, learnt: Policy) -> None:
-    game = Won(taught, learnt, ("line", "two lines"))
-    game.ask(*game.others[:2])
-    while "played on" not in game.changes():
-        game.step()
-    assert game.changes() == ["played on"]
-    assert game.world.tracker.queue[:2] == game.others[:2]
-    assert game.world.patterns.played == game.workspace.activity.rules.pattern("two lines").on(
-        game.world.own_deck
-    )
-    game.workspace.close()
+def test_nobody_has_won_when_another_game_begins(planned: Planned) -> None:
+    won_first(planned)
+    planned.control.apply(EndGame())
+    planned.begin(GamePlan())
+    assert planned.world.has_won == ()

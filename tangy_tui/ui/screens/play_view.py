@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.game_world import SIMULATED
-from tangy_profiles.planned_game import PlannedGame, as_planned
+from tangy_profiles.planned_game import as_planned
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.game_moment import plays_on
 from tangy_tui.app.readiness import battery_of
@@ -126,12 +126,15 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[Fact]:
             text.tangy_words(shown.control.autonomy.level, battery_of(world)),
         ]
     count = f"{len(view.called)} called" if view.called else text.NOTHING_CALLED
-    patterns = getattr(world, "patterns", None) if isinstance(world, PlannedGame) else None
+    game = as_planned(world)
+    won = [] if game is None else [shown.name(one) for one in game.has_won]
     return [
         f"{count}   {before}".rstrip(),
         time,
         text.pace_words(view),
-        text.played_words(patterns),
+        "" if game is None else text.played_facts(game.patterns),
+        text.SEVERAL_WINNERS if game is not None and game.game_plan.several else "",
+        text.winners_facts(won),
         text.tangy_words(shown.control.autonomy.level, battery_of(world)),
     ]
 

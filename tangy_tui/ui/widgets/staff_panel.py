@@ -230,7 +230,10 @@ class StaffPanel(RowView, can_focus=True):
             lines = wrap(", ".join(fact.replace(" ", HARD) for fact in facts), width)
             if len(lines) <= 2:
                 break
-        return rows + [((line.replace(HARD, " "), "text"),) for line in lines[:2]]
+        told = [line.replace(HARD, " ") for line in lines[:2]]
+        if len(lines) > len(told):  # a comma would promise more
+            told[-1] = told[-1].rstrip(", ")
+        return rows + [((line, "text"),) for line in told]
 
     def _everybody(self, width: int, height: int) -> list[Row]:
         """Draw people in as many columns as fit; in narrow ones if `height` lines are too few."""
