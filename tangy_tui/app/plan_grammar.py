@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, GameRules
@@ -20,17 +21,13 @@ from tangy_tui.app.game_commands import (
     SetPace,
     TakeBackCall,
 )
+from tangy_tui.app.presence_grammar import one_person_each, read_moved
 from tangy_tui.app.time_grammar import read_time
 
 CHECK = "check"
 """The word before a card's number in every activity; an activity may define another."""
 _PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
 _PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
-_COMES = r"(?:is|has) (?:here|come|arrived)|is back|(?:has )?(?:came|come|arrived)(?: back| in)?"
-_GOES = r"(?:is|has) (?:gone|left)|left|leaves|went|goes|is (?:going|leaving|away|not here)"
-_MOVED = re.compile(
-    rf"(?:(here)|left) (.+)|(.+?) (?:({_COMES})|{_GOES})(?: now| too| again| home| away)?", re.I
-)
 _JOINS = re.compile(
     r"(?:(add|guest)(?: (.+?))?|([^:]+?) joins(?: in| us)?)"
     r"(?:,? (?:at|on|in|to) (?:(table) |seat |chair |place )(\d{1,2}))?",
@@ -56,22 +53,26 @@ def lines_of(said: str, read: Callable[[str], object]) -> list[str]:
         TangyError: the line cannot be read, or it names a person who is not known.
     """
     try:
-        read(said)
+        if read(said) is not None:
+            return [said]
     except TangyError:
-        each = _one_person_each(said)
+        each = one_person_each(said)
         if len(each) == 1:
             raise
-        for line in each:
-            read(line)
-        return each
-    return [said]
+    else:
+        each = one_person_each(said)
+        if len(each) == 1 or not any(map(partial(_reads, read), each)):
+            return [said]
+    for line in each:
+        read(line)
+    return each
 
 
-def _one_person_each(said: str) -> list[str]:
-    """Return a line for each person if a line says of several that they are here or have left."""
-    found = re.fullmatch(r"(here|left) (.+)", said.strip(" ."), re.I)
-    names = [] if found is None else re.split(r",(?: and)? | and ", found[2])
-    return [said] if found is None or len(names) < 2 else [f"{found[1]} {one}" for one in names]
+def _reads(read: Callable[[str], object], line: str) -> bool:
+    """Return whether a line can be read as a command."""
+    with suppress(TangyError):
+        return read(line) is not None
+    return False
 
 
 def read_planned(
@@ -103,14 +104,14 @@ def read_planned(
         seat, table = (0, place) if joins[4] else (place, 0)
         guest = (joins[1] or "").casefold() == "guest"
         return Joins(joins[2] or joins[3] or "", guest, seat, table)
-    if moved := _MOVED.fullmatch(said):
+    if (moved := read_moved(said)) is not None:
         try:
-            person = find_person(moved[2] or moved[3])
+            person = find_person(moved.names)
         except TangyError:
-            if moved[2] is None:  # it may be an answer in words
+            if moved.names_first:  # it may be an answer in words
                 return None
             raise
-        return ComesIn(person) if moved[1] or moved[4] else GoesAway(person)
+        return ComesIn(person) if moved.comes else GoesAway(person)
     return None
 
 

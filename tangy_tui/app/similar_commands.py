@@ -37,13 +37,22 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 
 ABOUT_PERSON: dict[str, tuple[str, ...]] = {
     "ask for {name}": ("help", "helps", "needs", "need", "ask", "asks", "assist", "visit", "go"),
-    "left {name}": ("left", "gone", "leaves", "leave", "went", "away", "out", "remove"),
-    "here {name}": ("here", "back", "came", "come", "comes", "arrived", "in", "returned"),
+    "left {name}": (
+        *("left", "gone", "leaves", "leave", "leaving", "went", "away", "out", "remove"),
+        *("goodbye", "bye", "bed", "home", "toilet"),
+    ),
+    "here {name}": (
+        *("here", "back", "came", "come", "comes", "coming", "arrived", "arrives", "in"),
+        *("returned", "returns", "joined", "joins", "welcome"),
+    ),
     "{claim} {name}": ("won", "wins", "win", "winner", "check", "finished", "claim"),
     "{name} has card 17": ("card", "cards", "holds"),
     "void {name}": ("void", "response", "answer"),
 }
 """Words that hint at a command about a person."""
+
+OF_SEVERAL = ("left {name}", "here {name}")
+"""The commands that take several names."""
 
 NUMBERED: dict[str, tuple[str, ...]] = {
     "pace {number}": ("pace", "seconds", "second", "every", "interval"),
@@ -96,30 +105,42 @@ def _hinted(text: str, names: Sequence[str], claim: str) -> Iterator[str]:
     words = re.findall(r"[^\W_]+", text.casefold())
     words = ["claim" if word == claim.casefold() else word for word in words]
     number = next((word for word in words if word.isascii() and word.isdecimal()), "")
-    name = _named(words, names)
-    for command, hints in ABOUT_PERSON.items() if name else ():
+    found = _named(words, names)
+    for command, hints in ABOUT_PERSON.items() if found else ():
         if _hints(words, hints):
-            yield command.format(name=name, claim=claim)
-    if number or not name:
+            who = [_joined(found)] if command in OF_SEVERAL else found
+            yield from (command.format(name=name, claim=claim) for name in who)
+    if number or not found:
         for command, hints in NUMBERED.items():
             if _hints(words, hints):
                 yield command.format(number=number or PLAIN_NUMBERS[command], claim=claim)
-    for command, hints in COMMANDS.items() if not name else ():
+    for command, hints in COMMANDS.items() if not found else ():
         if _hints(words, hints):
             yield command
 
 
 def _hints(words: Sequence[str], hints: Sequence[str]) -> bool:
     return any(
-        word in hints or (len(word) > len("back") and get_close_matches(word, hints, 1, NEAR_WORD))
+        word in hints
+        or (len(word) > len("back") and get_close_matches(word, hints, 1, NEAR_WORD))
+        or (len(word) > len("le") and any(hint[:-1] == word for hint in hints))
         for word in words
     )
 
 
-def _named(words: Sequence[str], names: Sequence[str]) -> str:
-    """Return the name that words contain, in full or a word of it; "" if none or several do."""
+def _named(words: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Return the names that words contain, in full, or a word of them, or one misspelt."""
     spoken = f" {' '.join(words)} "
     full = [name for name in names if f" {name.casefold()} " in spoken]
     first = [name for name in names if set(name.casefold().split()) & set(words)]
-    found = full if len(full) == 1 else first
-    return found[0] if len(found) == 1 else ""
+    if full or first:
+        return full or first
+    firsts = {name.casefold().split()[0]: name for name in names if name.split()}
+    near = (get_close_matches(word, firsts, 1, NEAR_WORD) for word in words)
+    return list(dict.fromkeys(firsts[one[0]] for one in near if one))
+
+
+def _joined(names: Sequence[str]) -> str:
+    """Return names as a command takes them: "Ida, Otto and Rosa"."""
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last

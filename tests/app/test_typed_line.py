@@ -31,11 +31,45 @@ def test_one_line_can_say_of_several_people_that_they_left_or_came(workspace: Wo
     assert typed(workspace, "left User 3") == GoesAway("user3")
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "User 1 and User 2 left",
+        "User 1 & User 2 have left.",
+        "User 1, User 2 have gone to bed",
+        "User 1 and User 2 aren't here",
+        "User 1 and User 2 had to leave",
+        "User 1 and User 2 both left already",
+    ],
+)
+def test_names_may_stand_before_the_word_that_they_left(workspace: Workspace, line: str) -> None:
+    assert typed(workspace, line) == Several((GoesAway("user1"), GoesAway("user2")))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "User 1 and User 2 are here",
+        "User 1 and User 2 have come",
+        "User 1 and User 2 came back",
+        "here are User 1 and User 2",
+    ],
+)
+def test_names_may_stand_before_the_word_that_they_came(workspace: Workspace, line: str) -> None:
+    assert typed(workspace, line) == Several((ComesIn("user1"), ComesIn("user2")))
+
+
+def test_names_that_nobody_has_may_be_an_answer_in_words(workspace: Workspace) -> None:
+    assert typed(workspace, "the cards and the pens are here") is None
+    assert typed(workspace, "the markers left") is None
+
+
 def test_an_unknown_name_is_refused_without_a_list_of_everybody(data_folder: Path) -> None:
     workspace = Workspace(data_folder, users=13)
     for line, said in (
         ("left Xaver", "There is nobody called 'Xaver'."),
         ("left User 1 and Xaver", "There is nobody called 'Xaver'."),
+        ("User 1 and Xaver left", "There is nobody called 'Xaver'."),
     ):
         with pytest.raises(TangyError) as refused:
             typed(workspace, line)
