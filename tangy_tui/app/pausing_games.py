@@ -27,6 +27,10 @@ class PausingGames(JoiningGames):
     paused_itself: bool
     """Whether the program paused the game, and not staff."""
     _watch: StaffWatch
+    _by_hand = False
+    """Whether staff drive by keys: then the game waits, and what follows is kept in `_goes`."""
+    _goes = False
+    """Whether the game goes on after staff have driven."""
     _holds = 0
     """The number of questions that hold the game, until what staff confirm is carried out."""
     _unanswered = 0
@@ -35,8 +39,14 @@ class PausingGames(JoiningGames):
     def _tell_all(self) -> None:
         raise NotImplementedError
 
+    @property
+    def _continues(self) -> bool:
+        """Whether the game goes on, or will when staff have driven."""
+        return self._goes if self._by_hand else self.going
+
     def _pause(self, *, unasked: bool) -> list[Result]:
-        before, self.going, self.paused_itself = self.going, False, unasked
+        before = self._continues
+        self._goes, self.going, self.paused_itself = False, False, unasked
         self.single = False  # that step is not wanted any more
         self.goes_on = self.goes_on and not self.joined
         self._stands(did=before and not unasked)
@@ -49,13 +59,17 @@ class PausingGames(JoiningGames):
 
     @contextmanager
     def driving(self) -> Iterator[None]:
-        """Let staff drive by keys while the game waits."""
-        going, self.going, self.robot.driving = self.going, False, True
+        """Let staff drive by keys while the game waits, also if they say meanwhile that it goes on.
+
+        Their voice, or a freeze of the program, can pause the game or let it go on meanwhile.
+        """
+        self._goes, self.going = self.going, False
+        self._by_hand = self.robot.driving = True
         try:
             yield
         finally:
-            self.robot.driving = False
-            self.going = going and not self.stopped
+            self._by_hand = self.robot.driving = False
+            self.going = self._goes and not self.stopped
             self.note("drove")
             self._tell_all()
 
@@ -100,12 +114,13 @@ class PausingGames(JoiningGames):
             self.robot.release()  # a fault that halts it has a stop of its own
             self.stopped = False
             self.note("let go on")
-        elif not self.going:
+        elif not self._continues:
             self.note("went on")
         self._watch.go_on()
         if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
-        self.going, self.single, self.paused_itself = True, False, False
+        self._goes, self.going = True, not self._by_hand
+        self.single = self.paused_itself = False
         self.goes_on = self.goes_on or self.joined
         if (fault := self.supervision.halted) is not None:
             return [StaffNote("still halted", fault.name)]

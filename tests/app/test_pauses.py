@@ -188,3 +188,34 @@ def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> 
     assert view is not None and view.paused == 200
     (line,) = Inquiries(robot.control, workspace.name, None, str).lines("where") or []
     assert time_words(view.seconds, None, 200) in line
+
+
+@pytest.mark.parametrize(
+    ("before", "meanwhile", "after"),
+    [
+        ([], [], "running"),
+        ([Pause()], [], "paused"),
+        ([], [Pause()], "paused"),
+        ([Pause()], [GoOn()], "running"),
+        ([], [Pause(), GoOn()], "running"),
+        ([], [StopRobot()], "stopped"),
+        ([], [StopRobot(), GoOn()], "running"),
+    ],
+)
+def test_the_game_waits_while_staff_drive_and_is_then_as_they_said(
+    workspace: Workspace, before: list[GameCommand], meanwhile: list[GameCommand], after: str
+) -> None:
+    robot = Robot(workspace)
+    robot.next(2)
+    for command in before:
+        robot.control.apply(command)
+    called = len(robot.world.called)
+    with robot.control.driving():
+        robot.next(2)
+        for command in meanwhile:
+            robot.control.apply(command)
+        robot.next(2)
+        assert str(robot.control.phase) in ("staff", "stopped")
+    assert len(robot.world.called) == called and robot.control.phase == after
+    robot.next(2)
+    assert (len(robot.world.called) > called) is (after == "running")

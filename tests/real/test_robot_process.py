@@ -211,7 +211,11 @@ def test_a_killed_robot_process_is_reported_and_restarted(
     with pytest.raises(DeviceError):
         link.do("go", to=[5.0, 2.0, 1.57])
 
+    link.stop("staff stopped it")
     link.restart()
+    with pytest.raises(Preempted, match="staff stopped it"):
+        link.do("go", to=[5.0, 2.0, 1.57])
+    link.release()
     assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
 
 
