@@ -31,6 +31,7 @@ from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.console.trying_devices import TryingDevices
 from tangy_tui.text import set_up as text
+from tangy_tui.text import set_up_lines as lines
 from tangy_tui.text.control import noted_words
 from tangy_tui.text.times import local_now
 
@@ -68,7 +69,7 @@ class SetUpLines:
     def run(self) -> bool:
         """Set up; return whether to switch the robot on, to begin the game or to try it first."""
         self._tell_all()
-        self._write(text.LINES_HELP)
+        self._write(lines.LINES_HELP)
         while (line := self._read()) is not None:
             words = " ".join(line.split()).strip(" .")
             if words.casefold() in ("begin", *_TRY):
@@ -78,17 +79,17 @@ class SetUpLines:
                 self._tell_all()
                 continue
             if words.casefold() in _ACTIVITIES:
-                self._write(text.activities_line(self.setup.activities().values()))
+                self._write(lines.activities_line(self.setup.activities().values()))
                 continue
             if words.casefold() in _ROOMS:
-                self._write(text.rooms_line(self._rooms()))
+                self._write(lines.rooms_line(self._rooms()))
                 continue
             if read_inquiry(words) == "patterns":
                 rules = self.setup.workspace.activity.rules
-                self._write(text.patterns_to_choose(one.name for one in rules.patterns))
+                self._write(lines.patterns_to_choose(one.name for one in rules.patterns))
                 continue
             if not words or read_inquiry(words) == "help":
-                self._write(text.LINES_HELP)
+                self._write(lines.LINES_HELP)
                 continue
             try:
                 done = self._do(words)
@@ -113,11 +114,11 @@ class SetUpLines:
     def _tell_unknown(self, words: str) -> None:
         """Tell which command may have been meant, or that it works only in a game."""
         if self._command_in(words) is not None:
-            self._write(text.in_a_game_words(words))
+            self._write(lines.in_a_game_words(words))
             return
         first = words.partition(" ")[0].casefold()
-        near = get_close_matches(first, text.COMMANDS, 1, NEAR)
-        self._write(text.not_known_words(words, near[0] if near else ""))
+        near = get_close_matches(first, lines.COMMANDS, 1, NEAR)
+        self._write(lines.not_known_words(words, near[0] if near else ""))
 
     def use(self, read: Callable[[], str | None], write: Callable[[str], None]) -> None:
         """Read and write otherwise from now on."""
@@ -139,7 +140,7 @@ class SetUpLines:
         if stopped:
             self._stop()
         if not_ready:
-            self._write(text.lines_anyway(not_ready))
+            self._write(lines.lines_anyway(not_ready))
         if self._tries:
             self._write(text.TRY_LINES)
         if not (not_ready or stopped or self._tries):
@@ -153,7 +154,7 @@ class SetUpLines:
                 stopped = True
                 self._stop()
             elif not trying.take(line, command, stopped=stopped):
-                self._write(text.begin_or_end(line.strip()))
+                self._write(lines.begin_or_end(line.strip()))
         return False
 
     def _command_in(self, line: str) -> GameCommand | None:
@@ -167,7 +168,7 @@ class SetUpLines:
         """Stop the robot; beginning the game releases it."""
         if self.setup.world is not None:
             self.setup.world.link.stop(STOPPED)
-        self._write(text.lines_stopped())
+        self._write(lines.lines_stopped())
 
     def _find(self, wanted: str) -> str:
         return self.setup.workspace.find_person(wanted).id
@@ -180,7 +181,7 @@ class SetUpLines:
     def _tell_changes(self) -> None:
         """Write only the lines that changed: a screen reader reads each one out."""
         before, self._told = set(self._told), list(text.lines_of(self.setup))
-        for line in [line for line in self._told if line not in before] or [text.UNCHANGED]:
+        for line in [line for line in self._told if line not in before] or [lines.UNCHANGED]:
             self._write(line)
 
     def _own(self, words: str) -> bool:
@@ -189,7 +190,7 @@ class SetUpLines:
         if seat := _SEAT.fullmatch(words):
             person = self._find(seat[1])
             if not 1 <= int(seat[2]) <= len(setup.seats):
-                raise TangyError(text.no_seat_words(len(setup.seats)))
+                raise TangyError(lines.no_seat_words(len(setup.seats)))
             setup.move(person, int(seat[2]) - 1 - setup.seats.index(person))
         elif minutes := _MINUTES.fullmatch(words):
             setup.minutes = min(int(minutes[1]), 10 * MINUTES[-1])

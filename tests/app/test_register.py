@@ -17,6 +17,7 @@ from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text
+from tangy_tui.text import set_up_lines as by_lines
 from tangy_tui.text.register import with_guests
 
 
@@ -115,7 +116,7 @@ def test_a_change_prints_only_its_own_lines(data_folder: Path) -> None:
     assert SetUpLines(setup, read, said.append).run()
     assert [len(answer) for answer in told] == [everything, 2, 1, everything - 1]
     assert all("User 3" in line or "3 of 4" in line for line in told[1])
-    assert told[2] == [text.UNCHANGED]
+    assert told[2] == [by_lines.UNCHANGED]
     workspace.close()
 
 
@@ -128,7 +129,7 @@ def test_a_misspelt_answer_about_what_is_not_ready_is_asked_again(
     monkeypatch.setattr(SetUp, "checks", lambda self: [Check("tablet", "not ready")])
     lines = iter(["slwoer", typed])
     assert SetUpLines(setup, lambda: next(lines), said.append).begins_anyway() == begins
-    assert said[-1] == text.begin_or_end("slwoer")
+    assert said[-1] == by_lines.begin_or_end("slwoer")
     workspace.close()
 
 
@@ -215,7 +216,7 @@ def test_a_person_with_a_used_name_is_refused(data_folder: Path) -> None:
 
 def test_the_question_whether_to_begin_names_what_is_not_ready() -> None:
     failed = [Check("tablet", "not ready", "http://here/"), Check("sound", "not ready")]
-    told = text.lines_anyway(failed)
+    told = by_lines.lines_anyway(failed)
     assert text.NAMES["tablet"].lower() in told and text.NAMES["sound"].lower() in told
     assert text.NAMES["battery"].lower() not in told
 

@@ -9,6 +9,7 @@ from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text
+from tangy_tui.text import set_up_lines as told
 
 
 def answers(workspace: Workspace, *lines: str) -> tuple[SetUp, list[str]]:
@@ -34,26 +35,26 @@ def answers(workspace: Workspace, *lines: str) -> tuple[SetUp, list[str]]:
 )
 def test_the_nearest_command_is_told(workspace: Workspace, typed: str, near: str) -> None:
     setup, said = answers(workspace, "time 40", "left User 3", typed)
-    assert said[-1] == text.not_known_words(typed, near)
+    assert said[-1] == told.not_known_words(typed, near)
     assert setup.minutes == 40 and setup.away == {"user3"}
 
 
 def test_a_command_of_games_is_known_but_works_later(workspace: Workspace) -> None:
     for typed in ("pause", "call again", "stop", "bingo 17"):
-        assert answers(workspace, typed)[1] == [text.in_a_game_words(typed)]
+        assert answers(workspace, typed)[1] == [told.in_a_game_words(typed)]
 
 
 def test_help_and_patterns_are_answered_before_a_game(workspace: Workspace) -> None:
     names = [pattern.name for pattern in workspace.activity.rules.patterns]
     assert answers(workspace, "help", "patterns")[1] == [
-        text.LINES_HELP,
-        text.patterns_to_choose(names),
+        told.LINES_HELP,
+        told.patterns_to_choose(names),
     ]
 
 
 def test_a_seat_that_does_not_exist_is_refused(workspace: Workspace) -> None:
     setup, said = answers(workspace, "seat User 2 30", "seat User 2 0")
-    assert said == [text.no_seat_words(4)] * 2
+    assert said == [told.no_seat_words(4)] * 2
     assert setup.seats == ["user1", "user2", "user3", "user4"]
 
 
@@ -65,11 +66,11 @@ def test_a_line_with_an_unknown_person_is_refused_whole(workspace: Workspace) ->
 
 
 def test_every_example_of_a_command_is_understood(workspace: Workspace) -> None:
-    for word, example in text.COMMANDS.items():
+    for word, example in told.COMMANDS.items():
         if word not in ("begin", "end", "try"):
             typed = example.replace("Rosa to", "User 2 to").replace("Rosa", "User 3")
             _, said = answers(workspace, typed)
-            assert said and text.not_known_words(typed, word) not in said, example
+            assert said and told.not_known_words(typed, word) not in said, example
 
 
 def test_a_state_that_no_device_tells_has_words_of_its_own() -> None:

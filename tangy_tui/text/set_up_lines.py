@@ -1,0 +1,103 @@
+"""Words of the set-up by lines: its commands, and the answers to those that it does not take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from tangy_profiles.reading import plain
+from tangy_tui.app.readiness import Check
+from tangy_tui.text.set_up import NAMES, STOPPED
+
+LINES_HELP = (
+    "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
+    "activity trivia, room hall, play for line, full card, several winners, pace 20, visits on, "
+    "words gentle, time 40, duty Nina. Show lists everything again. "
+    "Try switches Tangy on, so that you can try cards, faces and sound. "
+    "Then: begin. Or: end."
+)
+UNCHANGED = "That changes nothing."
+COMMANDS: Mapping[str, str] = {
+    **{word: f"{word} Rosa" for word in ("left", "here")},
+    **{word: f"{word} Anna" for word in ("guest", "add")},
+    "seat": "seat Rosa 3",
+    "rename": "rename Rosa to Rosie",
+    "activity": "activity trivia",
+    "activities": "activities",
+    "room": "room hall",
+    "rooms": "rooms",
+    "play": "play for line, full card",
+    "patterns": "patterns",
+    "several": "several winners",
+    "one": "one winner",
+    "pace": "pace 20",
+    "faster": "faster",
+    "slower": "slower",
+    "visits": "visits on",
+    "words": "words gentle",
+    "time": "time 40",
+    "duty": "duty Nina",
+    "show": "show",
+    "try": "try",
+    "help": "help",
+    "begin": "begin",
+    "end": "end",
+}
+"""An example of each command of the set-up by lines, by its first word."""
+
+
+def not_known_words(typed: str, near: str) -> str:
+    """Tell that a line is no command of the set-up, and the command that it may have meant.
+
+    Args:
+        typed: the line.
+        near: the first word of the command; "" if none is similar.
+    """
+    first, example = typed.partition(" ")[0].casefold(), COMMANDS.get(near, "")
+    if near == first:
+        return plain(f"Tangy cannot do '{typed[:60]}'. Type it as in: {example}.")
+    meant = f"Did you mean: {example}?" if example else "help lists all commands."
+    return plain(f"Tangy does not know '{typed[:60]}'. {meant} All that you chose is kept.")
+
+
+def in_a_game_words(typed: str) -> str:
+    """Tell that a command works only in a game."""
+    return plain(f"'{typed[:60]}' works in a game. Nothing moves yet: begin starts it.")
+
+
+def no_seat_words(seats: int) -> str:
+    """Tell which seats there are."""
+    return f"The seats have the numbers 1 to {seats}."
+
+
+def patterns_to_choose(names: Iterable[str]) -> str:
+    """List the patterns to choose from."""
+    labels = ", ".join(names)
+    if not labels:
+        return "This activity has no patterns to choose."
+    return f"You can play for: {labels}. Type: play for, and one or more of them."
+
+
+def lines_anyway(not_ready: Sequence[Check]) -> str:
+    """Name the failed checks, and ask whether to begin in spite of them."""
+    names = ", ".join(NAMES[check.name] for check in not_ready).lower()
+    return f"Not ready: {names}. Type begin to begin anyway, or end."
+
+
+def lines_stopped() -> str:
+    """Tell that the robot was stopped before the game, and how to begin or leave."""
+    return f"{STOPPED} Type begin, or end."
+
+
+def begin_or_end(typed: str) -> str:
+    """Ask again after a line that is neither."""
+    return plain(f"I do not know '{typed[:60]}' here. Type begin to begin anyway, or end.")
+
+
+def activities_line(titles: Iterable[str]) -> str:
+    """List the activities to choose from."""
+    return f"You can play: {', '.join(titles)}. Type: activity, and one of them."
+
+
+def rooms_line(names: Iterable[str]) -> str:
+    """List the rooms to choose from."""
+    return f"There are these rooms: {', '.join(names)}. Type: room, and one of them."
