@@ -105,9 +105,8 @@ ROWS = (
     Row("where, why", "says what Tangy sees; what it does now, why, and who waits"),
     Row("what, faults", "says what to do about a fault, and all faults of this game"),
     Row("seen, expert, reached, clear", "about a fault that halts Tangy"),
-    Row(
-        "wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, called, over"
-    ),
+    Row("wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, over"),
+    Row("wait until called", "reads the next line after the next number", needs=CALLS),
     Row("end", "ends the game"),
 )
 """What help lists, in this order; a game leaves out what it does not offer."""

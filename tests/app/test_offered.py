@@ -87,7 +87,8 @@ def test_a_quiz_names_no_cards_and_no_pace(workspace: Workspace) -> None:
     told = "\n".join(Inquiries(control, workspace.name, None, str).lines("help") or [])
     assert "NAME: " in told and "drive left 2: " in told and "why not NAME: " in told
     told += example_words(rules, offers)
-    assert not [word for word in ("card", "17", "B-5", "pace", "number", "void") if word in told]
+    words = ("card", "17", "B-5", "pace", "number", "called", "void")
+    assert not [word for word in words if word in told]
     for typed in ("make it slower please", "card 17", "User 1 has card 17", "several winner"):
         assert not nearest_commands(typed, ["User 1"], rules, offers), typed
 
