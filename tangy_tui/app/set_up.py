@@ -266,6 +266,8 @@ class SetUp(Readiness):
             TangyError: there is no such strength.
         """
         names = [one.name for one in self.workspace.activity.rules.strengths]
+        if not names:
+            raise TangyError("In this activity you cannot choose how strongly Tangy speaks.")
         if name.casefold() not in names:
             raise TangyError(plain(f"There is no {name!r}: {nearest(name.casefold(), names)}"))
         self.strength = name.casefold()

@@ -29,6 +29,7 @@ from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.planned_time import planned_end
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.console.trying_devices import TryingDevices
 from tangy_tui.text import set_up as text
 from tangy_tui.text import set_up_lines as lines
@@ -69,7 +70,7 @@ class SetUpLines:
     def run(self) -> bool:
         """Set up; return whether to switch the robot on, to begin the game or to try it first."""
         self._tell_all()
-        self._write(lines.LINES_HELP)
+        self._write(lines.help_words(self.setup))
         while (line := self._read()) is not None:
             words = " ".join(line.split()).strip(" .")
             if words.casefold() in ("begin", *_TRY):
@@ -89,7 +90,7 @@ class SetUpLines:
                 self._write(lines.patterns_to_choose(one.name for one in rules.patterns))
                 continue
             if not words or read_inquiry(words) == "help":
-                self._write(lines.LINES_HELP)
+                self._write(lines.help_words(self.setup))
                 continue
             try:
                 done = self._do(words)
@@ -117,8 +118,9 @@ class SetUpLines:
             self._write(lines.in_a_game_words(words))
             return
         first = words.partition(" ")[0].casefold()
-        near = get_close_matches(first, lines.COMMANDS, 1, NEAR)
-        self._write(lines.not_known_words(words, near[0] if near else ""))
+        known = lines.commands_of(self.setup)
+        near = get_close_matches(first, known, 1, NEAR)
+        self._write(lines.not_known_words(words, near[0] if near else "", known))
 
     def use(self, read: Callable[[], str | None], write: Callable[[str], None]) -> None:
         """Read and write otherwise from now on."""
@@ -237,6 +239,8 @@ class SetUpLines:
                 setup.away.add(person)
             case ChoosePatterns(names):
                 setup.patterns = list(names)
+            case SetPace() | ChangePace() | LetWin() if not setup.calls:
+                raise TangyError(noted_words(StaffNote("no cards"), setup.workspace.name))
             case SetPace(seconds):
                 setup.pace = seconds
             case PlanTime() as planned:

@@ -6,15 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from tangy_profiles.reading import plain
 from tangy_tui.app.readiness import Check
+from tangy_tui.app.set_up import SetUp
 from tangy_tui.text.set_up import NAMES, STOPPED
 
-LINES_HELP = (
-    "Type: left Rosa, here Rosa, seat Rosa 3, guest Anna, add Anna, rename Rosa to Rosie, "
-    "activity trivia, room hall, play for line, full card, several winners, pace 20, visits on, "
-    "words gentle, time 40, duty Nina. Show lists everything again. "
-    "Try switches Tangy on, so that you can try cards, faces and sound. "
-    "Then: begin. Or: end."
-)
 UNCHANGED = "That changes nothing."
 COMMANDS: Mapping[str, str] = {
     **{word: f"{word} Rosa" for word in ("left", "here")},
@@ -43,16 +37,49 @@ COMMANDS: Mapping[str, str] = {
     "end": "end",
 }
 """An example of each command of the set-up by lines, by its first word."""
+WITH_CALLS = frozenset({"several", "one", "pace", "faster", "slower", "visits"})
+WITH_PATTERNS = frozenset({"play", "patterns"})
+NOT_FOR_TEAMS = frozenset({"guest", "add", "rename"})
+NAMED_APART = ("activities", "rooms", "patterns", "one", "faster", "slower")
+"""Commands that help leaves out because it names similar ones."""
+LAST = ("show", "try", "help", "begin", "end")
+"""Commands that it names in sentences of their own."""
 
 
-def not_known_words(typed: str, near: str) -> str:
+def commands_of(setup: SetUp) -> dict[str, str]:
+    """Return the examples of the commands that make sense for the chosen activity."""
+    rules, left_out = setup.workspace.activity.rules, set[str]()
+    if not setup.calls:
+        left_out |= WITH_CALLS
+    if not rules.patterns:
+        left_out |= WITH_PATTERNS
+    if not rules.strengths:
+        left_out.add("words")
+    if setup.teams_play:
+        left_out |= NOT_FOR_TEAMS
+    return {word: example for word, example in COMMANDS.items() if word not in left_out}
+
+
+def help_words(setup: SetUp) -> str:
+    """List the commands for the chosen activity."""
+    known = commands_of(setup)
+    choices = [known[word] for word in known if word not in (*NAMED_APART, *LAST)]
+    tried = "cards, faces and sound" if setup.calls else "faces and sound"
+    return (
+        f"Type: {', '.join(choices)}. Show lists everything again. Try switches Tangy on, so that "
+        f"you can try {tried}. Then: begin. Or: end."
+    )
+
+
+def not_known_words(typed: str, near: str, known: Mapping[str, str] = COMMANDS) -> str:
     """Tell that a line is no command of the set-up, and the command that it may have meant.
 
     Args:
         typed: the line.
         near: the first word of the command; "" if none is similar.
+        known: an example of each command, by its first word.
     """
-    first, example = typed.partition(" ")[0].casefold(), COMMANDS.get(near, "")
+    first, example = typed.partition(" ")[0].casefold(), known.get(near, "")
     if near == first:
         return plain(f"Tangy cannot do '{typed[:60]}'. Type it as in: {example}.")
     meant = f"Did you mean: {example}?" if example else "help lists all commands."

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+from pathlib import Path
+
 import pytest
 
 from tangy_tui.app.readiness import CHECKS, Check
 from tangy_tui.app.set_up import SetUp
+from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.set_up import SetUpLines
 from tangy_tui.text import set_up as text
 from tangy_tui.text import set_up_lines as told
+from tangy_tui.text.control import noted_words
 
 
 def answers(workspace: Workspace, *lines: str) -> tuple[SetUp, list[str]]:
@@ -47,7 +52,7 @@ def test_a_command_of_games_is_known_but_works_later(workspace: Workspace) -> No
 def test_help_and_patterns_are_answered_before_a_game(workspace: Workspace) -> None:
     names = [pattern.name for pattern in workspace.activity.rules.patterns]
     assert answers(workspace, "help", "patterns")[1] == [
-        told.LINES_HELP,
+        told.help_words(SetUp.of(workspace)),
         told.patterns_to_choose(names),
     ]
 
@@ -76,3 +81,21 @@ def test_every_example_of_a_command_is_understood(workspace: Workspace) -> None:
 def test_a_state_that_no_device_tells_has_words_of_its_own() -> None:
     words = [text.check_words(Check(name, "not told")) for name in CHECKS]
     assert len({*words}) == len(CHECKS)
+
+
+def test_a_quiz_is_set_up_without_cards(tmp_path: Path) -> None:
+    with closing(Workspace(tmp_path, activity="trivia", users=4)) as quiz:
+        setup, said = answers(quiz, "help", "pace 20", "words gentle", "play for line", "begn")
+        listed = told.help_words(setup)
+        assert said[0] == listed and "left Rosa" in listed and "time 40" in listed
+        words = ("pace", "play for", "winner", "visits", "gentle", "card")
+        assert not [word for word in words if word in listed]
+        assert said[1] == noted_words(StaffNote("no cards"), str)
+        assert "cannot choose how strongly" in said[2]
+        assert "line, full card" not in said[3] and "begin" in said[4]
+
+
+def test_a_game_of_teams_is_set_up_without_new_people(tmp_path: Path) -> None:
+    with closing(Workspace(tmp_path, activity="team-trivia")) as teams:
+        listed = told.help_words(SetUp.of(teams))
+        assert "guest" not in listed and "left Rosa" in listed
