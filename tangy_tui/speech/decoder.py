@@ -182,7 +182,8 @@ class TwoDecoders(_Streaming):
         phrase = not words or bare(tuple(words.split())) in self._bare
         if phrase or expecting != "commands" or not self._guesses:
             return words, score, ()
-        return words, score, likeliest(self._search, pcm, "sentences")
+        guesses, _ = likeliest(self._search, pcm, "sentences")
+        return words, score, guesses
 
     def close(self) -> None:
         """End the child processes."""

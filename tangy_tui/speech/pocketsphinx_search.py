@@ -18,22 +18,29 @@ SEGMENTATIONS = 200  # paths to search for them; many have the same words at oth
 NO_PATH = -1e9  # score if no path is complete
 
 
-def make_search(words: str, *, bestpath: bool, active: int = 30_000) -> Any:
+def make_search(
+    words: str, *, bestpath: bool, active: int = 30_000, means: bytes | None = None
+) -> Any:
     """Create a decoder without any search.
 
     Args:
         words: its dictionary.
         bestpath: search the lattice again at the end.
         active: the beam, as the most active HMMs; fewer are faster, but less accurate.
+        means: the file of the acoustic model's means, if they are not the usual ones.
     """
     import pocketsphinx
 
     with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
         path = Path(folder) / "dict"
         path.write_text(words, encoding="utf-8")
+        moved = {}
+        if means is not None:
+            (Path(folder) / "means").write_bytes(means)
+            moved["mean"] = str(Path(folder) / "means")
         return pocketsphinx.Decoder(
             lm=None, dict=str(path), cmn="batch", loglevel="ERROR", bestpath=bestpath,
-            maxhmmpf=active,
+            maxhmmpf=active, **moved,
         )  # fmt: skip
 
 
@@ -63,18 +70,21 @@ def best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]
     return str(best.hypstr), _log(best.score) / frames, sum(words) / max(1, len(words))
 
 
-def likeliest(decoder: Any, pcm: bytes, search: str) -> tuple[str, ...]:
-    """Return up to `GUESSES` sentences that may have been said, the best path's first."""
-    words, _, _ = best_path(decoder, pcm, search)
+def likeliest(decoder: Any, pcm: bytes, search: str) -> tuple[tuple[str, ...], float]:
+    """Return up to `GUESSES` sentences that may have been said, the best path's first.
+
+    Its log P(sound, words) per frame comes after them.
+    """
+    words, score, _ = best_path(decoder, pcm, search)
     if not words:
-        return ()
+        return (), score
     guesses = {words: None}
     for path in islice(decoder.nbest() or (), SEGMENTATIONS):
         if path is not None:  # None if the search has no more
             guesses[str(path.hypstr)] = None
         if len(guesses) == GUESSES:
             break
-    return tuple(guesses)
+    return tuple(guesses), score
 
 
 def _log(score: float) -> float:

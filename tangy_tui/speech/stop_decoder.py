@@ -6,6 +6,9 @@ likely to; the longer it is, the likelier they must be, because a long sentence 
 words of stopping somewhere. If the best path does not stop by the rules, the stop is in doubt, and
 a command that the other decoders hear has priority: a synthetic or foreign voice is often
 recognised as "tell the robot" before "stop the robot".
+
+If the sound fits badly, the utterance is decoded again with the means of other voices
+(`other_voices`), and the search that fits better is used.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from typing import Any, NamedTuple
 from tangy_tui.language.stop_sentence import likelihood, prepare, stops
 from tangy_tui.speech.language import dictionary, open_model, words_of
 from tangy_tui.speech.noise_reduction import cleared
+from tangy_tui.speech.other_voices import moved_means
 from tangy_tui.speech.pocketsphinx_search import add_model, likeliest, make_search
 
 SHARE = 0.05  # of everyday words
@@ -23,6 +27,7 @@ BY_RULES = 0.33  # what the rules add to the mean likelihood of these sentences
 EACH_WORD = 0.08  # likelihood that a stop needs for each word of the best path
 FEWEST, MOST = 3, 8  # words that count
 ACTIVE = 1500
+FITS = -3.8  # score per frame of the best path below which the means of other voices are tried
 ACCENTS = {
     "stop": ("S T AO P", "S T AH P"),
     "stopped": ("S T AO P T",),
@@ -72,20 +77,32 @@ class StopDecoder:
         words = words_of((*texts, *others)) | everyday.keys()
         said = {word: (*known[word], *ACCENTS.get(word, ())) for word in words}
         prepare()  # before the first utterance has to wait
-        self._search = make_search(dictionary(said), bestpath=True, active=ACTIVE)
-        add_model(self._search, "all", open_model((*others, *texts), everyday, SHARE))
+        spoken, model = dictionary(said), open_model((*others, *texts), everyday, SHARE)
+        self._search = make_search(spoken, bestpath=True, active=ACTIVE)
+        self._other = make_search(spoken, bestpath=True, active=ACTIVE, means=moved_means())
+        for search in (self._search, self._other):
+            add_model(search, "all", model)
 
     def hear(self, pcm: bytes) -> HeardStop:
         """Return the sentence of an utterance (16 kHz mono s16le) that stops the robot."""
         if self._search is None:
             return HeardStop()
-        guesses = likeliest(self._search, cleared(pcm), "all")
+        guesses = self._guesses(cleared(pcm))
         if not guesses:
             return HeardStop()
         likely = sum(likelihood(guess, self._game) for guess in guesses) / len(guesses)
         certain = stops(words := guesses[0], self._game)
         needed = EACH_WORD * min(max(len(words.split()), FEWEST), MOST)
         return HeardStop(words, certain) if likely + certain * BY_RULES >= needed else HeardStop()
+
+    def _guesses(self, pcm: bytes) -> tuple[str, ...]:
+        """Return the likeliest sentences with the means that fit better."""
+        guesses, score = likeliest(self._search, pcm, "all")
+        if score < FITS:
+            others, other_score = likeliest(self._other, pcm, "all")
+            if other_score > score:
+                return others
+        return guesses
 
 
 def _sayable(texts: Sequence[str], known: Known) -> list[str]:

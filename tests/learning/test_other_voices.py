@@ -1,0 +1,110 @@
+"""The stop decoder's second look, with the acoustic model's means of other voices."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangy_hw.audio.wav import RATE, read_wav
+from tangy_profiles.activity import load_activity
+from tangy_profiles.person import load_people
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.speech import other_voices, pocketsphinx_search, stop_decoder
+from tangy_tui.speech.decoder import make_decoder
+from tangy_tui.speech.evidence import USUAL
+from tangy_tui.speech.other_voices import PHONES, SIZE, STREAMS, moved_means, transformed
+from tangy_tui.speech.stop_decoder import FITS, HeardStop, StopDecoder
+from tangy_tui.speech.understanding import wanted
+
+BADLY = FITS - 1.0
+FORMANT_STOPS = (
+    ("please to stop the robot now", "en-us+f4"),
+    ("stand still Tangy", "en-029+m5"),
+    ("get off my foot", "en-029+m5"),
+)
+"""Sentences that the usual means do not hear, and the voices that say them."""
+
+
+def heard_with(
+    monkeypatch: pytest.MonkeyPatch, usual: float, other: float
+) -> tuple[HeardStop, list[str]]:
+    """Return what is heard if the other means alone hear a stop, and the means that were used."""
+    paths = {"usual": ("the dog", usual, 0.0), "other": ("hey stop", other, 0.0)}
+    used: list[str] = []
+
+    def best_path(search: Any, *_: object) -> tuple[str, float, float]:
+        used.append(search.name)
+        return paths[search.name]
+
+    def search(*_: object, means: bytes | None = None, **__: object) -> SimpleNamespace:
+        return SimpleNamespace(name="usual" if means is None else "other", nbest=lambda: ())
+
+    monkeypatch.setattr(stop_decoder, "make_search", search)
+    monkeypatch.setattr(stop_decoder, "moved_means", lambda: b"")
+    monkeypatch.setattr(stop_decoder, "add_model", lambda *_: None)
+    monkeypatch.setattr(pocketsphinx_search, "best_path", best_path)
+    known = {"stop": ("S T AA P",), "the": ("DH AH",)}
+    return StopDecoder(["stop"], [], {"the": 1.0}, known).hear(bytes(RATE)), used
+
+
+def test_sound_that_fits_is_decoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert heard_with(monkeypatch, FITS, 0.0) == (HeardStop(), ["usual"])
+
+
+@pytest.mark.parametrize(("better", "stops"), [(0.1, True), (-0.1, False)])
+def test_sound_that_fits_badly_is_heard_with_the_means_that_fit_better(
+    monkeypatch: pytest.MonkeyPatch, better: float, stops: bool
+) -> None:
+    heard, used = heard_with(monkeypatch, BADLY, BADLY + better)
+    assert heard == (HeardStop("hey stop", sure=True) if stops else HeardStop())
+    assert used == ["usual", "other"]
+
+
+def test_each_phone_and_stream_has_its_own_transform() -> None:
+    means = np.random.default_rng(0).normal(size=(PHONES, STREAMS, 2, SIZE))
+    transforms = np.zeros((PHONES, STREAMS, SIZE, 1 + SIZE))
+    transforms[..., 1:] = np.eye(SIZE)
+    transforms[7, 1] = 0
+    transforms[7, 1, 0, 0] = 3.0  # the constant of the first feature
+    transforms[7, 1, 2, 1 + 4] = 2.0  # the third feature is twice the fifth
+    moved = transformed(means, transforms)
+    assert np.allclose(np.delete(moved, 7, 0), np.delete(means, 7, 0))
+    assert np.allclose(moved[7, [0, 2]], means[7, [0, 2]])
+    assert np.allclose(moved[7, 1, :, [0, 2, 3]].T, np.c_[[3, 3], 2 * means[7, 1, :, 4], [0, 0]])
+
+
+def test_silence_and_noises_keep_their_means() -> None:
+    import pocketsphinx
+
+    path = Path(pocketsphinx.get_model_path(other_voices.MODEL))
+    _, usual = other_voices.read_means(path.read_bytes())
+    _, moved = other_voices.read_means(moved_means() + bytes(4))
+    same = [phone for phone in range(PHONES) if np.allclose(usual[phone], moved[phone], atol=0.05)]
+    assert len(same) == 3
+    assert np.abs(moved - usual).max() < 200
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("espeak-ng") is None, reason="needs espeak-ng")
+def test_a_formant_voice_stops_the_robot(tmp_path: Path) -> None:
+    book = Phrasebook(load_activity("bingo"), load_people(4))
+    decoder = make_decoder(wanted(book, USUAL))
+    said = {}
+    try:
+        for text, voice in FORMANT_STOPS:
+            path = tmp_path / "said.wav"
+            command = ["espeak-ng", "-v", voice, "-w", str(path), text]
+            subprocess.run(command, check=True)  # noqa: S603
+            samples = np.frombuffer(read_wav(path), "<i2").astype(float)
+            noise = np.random.default_rng(0).normal(0, 8, len(samples) + RATE // 2)
+            noise[RATE // 4 : -RATE // 4] += samples
+            said[text] = decoder.decode(noise.astype("<i2").tobytes(), "commands").stop
+    finally:
+        decoder.close()
+    assert all(said.values()), said
