@@ -44,6 +44,10 @@ FEW_DRAWN = 3
 FEW_ROWS = 24
 """The most people in all drawings together, if the page should fit on two sheets."""
 
+FEW_GAMES = 3
+"""Each further game takes the room of `GAME_ROWS` people in the drawings."""
+GAME_ROWS = 4
+
 STYLE = """
 :root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; }
 @media (prefers-color-scheme: dark) { :root { --critical: #f87171; --minor: #fbbf24;
@@ -112,13 +116,19 @@ def session_page(session: Session, *, full: bool = True) -> str:
     parts = [*_head(session, full=full), *_care(session), *people_part(session)]
     parts += [*player_facts_part(session), *calls_part(session)]
     parts += [*staff_part(session), *([] if full else faults_part(session))]
-    few = max(1, min(FEW_DRAWN, FEW_ROWS // max(1, len(session.people))))
-    parts += _timelines(session, MOST_DRAWN if full else few, full=full)
+    parts += _timelines(session, MOST_DRAWN if full else drawn_games(session), full=full)
     if full:
         parts += [*responses_part(session), *_faults(session), *_tables(session)]
     return document(
         title, _sum(session, full=full), [*parts, *_notes(session)], STYLE + PARTS_STYLE
     )
+
+
+def drawn_games(session: Session) -> int:
+    """Return how many games are drawn if the page should fit on two sheets; the others are told."""
+    games, people = len(session.games), max(1, len(session.people))
+    rows = FEW_ROWS - GAME_ROWS * max(0, games - FEW_GAMES)
+    return 1 if games == 1 else max(0, min(FEW_DRAWN, rows // people))
 
 
 def _sum(session: Session, *, full: bool) -> str:
@@ -185,10 +195,12 @@ def _care(session: Session) -> Iterator[str]:
 
 def _timelines(session: Session, most: int, *, full: bool) -> Iterator[str]:
     numbers = _numbers(session)
-    drawn = session.replays[-most:]
+    drawn = session.replays[-most:] if most else ()
     yield f'<div class="game">{heading(say.WHEN)}'
     if len(drawn) < len(session.replays):
         yield paragraph(say.drawn_words(most, len(session.replays), full=full))
+        if not drawn:
+            yield "</div>"
     played, stages = "", dict[str, str]()
     for index, replay in enumerate(drawn):
         if index:

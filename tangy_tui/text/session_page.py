@@ -60,6 +60,8 @@ def how_long(session: Session) -> str:
 
 def drawn_words(drawn: int, games: int, *, full: bool) -> str:
     """Tell how many of the games are drawn."""
+    if not drawn:
+        return f"The {games} games are not drawn{'' if full else TO_DRAW_MORE}."
     last = (
         f"The last of {games} games is" if drawn == 1 else f"The last {drawn} of {games} games are"
     )
