@@ -289,6 +289,16 @@ def test_a_claim_asks_if_the_person_is_away(control: GameController, claim: Clai
     assert (asked.command, asked.people) == (ClaimCard(2, claim.person), ("user2",))
 
 
+def test_a_claim_asks_about_a_person_who_is_away_also_if_nobody_knew_the_card(
+    workspace: Workspace,
+) -> None:
+    control = Robot(workspace).control
+    control.apply(GoesAway("user2"))
+    asked = needed_confirmation(ClaimCard(31, "user2"), control)
+    assert asked is not None and (asked.kind, asked.people) == ("claim away", ("user2",))
+    assert needed_confirmation(ClaimCard(31, "user1"), control) is None
+
+
 def test_a_claim_tells_whose_card_it_is_if_nobody_knew(workspace: Workspace) -> None:
     control = (robot := Robot(workspace)).control
     dealt = robot.world.cards.dealt

@@ -9,7 +9,15 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.game_rules import USUAL_PACE, GamePlan
-from tangy_tui.app.game_commands import ComesIn, GoesAway, GoOn, SetPace
+from tangy_tui.app.game_commands import (
+    ChoosePatterns,
+    ComesIn,
+    EndGame,
+    GoesAway,
+    GoOn,
+    LetWin,
+    SetPace,
+)
 from tangy_tui.app.last_plan import last_plan
 from tangy_tui.app.set_up import SetUp
 from tangy_tui.app.workspace import Workspace
@@ -66,3 +74,24 @@ def test_who_was_away_on_another_day_is_expected_again(workspace: Workspace) -> 
     assert last_plan(workspace.store, name, today) == PLAN
     assert last_plan(workspace.store, name, tomorrow) == replace(PLAN, absent=())
     assert last_plan(workspace.store, "another") is None
+
+
+def test_what_staff_choose_between_two_games_holds_in_the_next(workspace: Workspace) -> None:
+    robot = Robot(workspace)
+    control, world = robot.control, robot.world
+    robot.next(2)
+    control.apply(EndGame())
+    for command in (
+        SetPace(7.0),
+        ChoosePatterns(("full card",)),
+        LetWin(True, True),
+        GoesAway("user2"),
+    ):
+        control.apply(command)
+    assert control.begin()
+    present = world.patterns.present
+    assert world.pace == 7.0 and present is not None and present.name == "full card"
+    assert world.game_plan.several and world.game_plan.visits
+    assert control.plan.away == {"user2"}
+    control.apply(ComesIn("user2"))
+    assert control.plan.away == frozenset()
