@@ -23,11 +23,31 @@ INQUIRIES: dict[str, Inquiry] = {
     **dict.fromkeys(("patterns", "pattern", "which patterns"), "patterns"),
 }
 
-WHOSE_CARDS = ("cards", "card", "whose card", "whose cards", "who has which card")
+WHOSE_CARDS = (
+    *("cards", "card", "whose card", "whose cards", "who has which card", "all cards"),
+    *("whose cards are there", "which cards", "which cards are there", "what cards are there"),
+)
 """Questions in a game about whose card is whose."""
 
-WHO_IS_HERE = ("people", "who", "who is here", "who is there", "who waits")
-"""Questions in a game about who is here, and how long they have waited."""
+WHO_IS_HERE = ("people", "who", "who is here", "who is there")
+"""Questions in a game about who is here, and who has come or left."""
+
+_WAITS = (
+    r"(?:waits?|waiting|waited|asks?|asked|asking|wants?|needs?|queues|queu?eing"
+    r"|(?:has|have|with|got) (?:a|their|his|her) hands?(?: up)?)"
+)
+_FOR_HELP = (
+    r"(?: (?:for|to|be|help|helped|a|visit|visited|tangy|the|robot|it|you|us|now|longest|so|far"
+    r"|still|in|line|up|of|me))*"
+)
+_WHO_WAITS = re.compile(
+    rf"(?:and )?who(?:'s| is| are| has| have| else| all| still)* {_WAITS}{_FOR_HELP}"
+    rf"|(?:is|are|does|do|has|did) (?:anybody|anyone|somebody|someone|there)(?: else| still)*"
+    rf" (?:(?:anybody|anyone|somebody|someone) )?{_WAITS}{_FOR_HELP}"
+    r"|(?:show )?(?:me )?(?:the )?(?:queue|requests|waiting list)"
+    r"|who(?: is|'s) (?:in the queue|in line|on the list)"
+)
+"""Questions about everybody who waits, in the order of the visits."""
 
 _TANGY = r"(?:you|it|tangy|the robot|he|she)"
 _WHY = re.compile(
@@ -71,6 +91,12 @@ def read_inquiry(text: str) -> Inquiry | None:
     return "why" if _WHY.fullmatch(words) or otherwise else None
 
 
+def asks_who_waits(text: str) -> bool:
+    """Return whether words ask who waits for a visit."""
+    words = " ".join(text.replace("\u2019", "'").split()).casefold()
+    return _WHO_WAITS.fullmatch(words.strip(" ?.!,")) is not None
+
+
 @dataclass(frozen=True, slots=True)
 class AsksAbout:
     """A question about people, by id: why Tangy goes to them or not, and when their turn is."""
@@ -83,7 +109,12 @@ class AsksHowLong:
     """A question about how long the session has lasted, and when it ends."""
 
 
-Question: TypeAlias = AsksAbout | AsksHowLong
+@dataclass(frozen=True, slots=True)
+class AsksWhoWaits:
+    """A question about everybody who waits for a visit, in the order of the visits."""
+
+
+Question: TypeAlias = AsksAbout | AsksHowLong | AsksWhoWaits
 
 _SHORT = {
     "n't": " not",

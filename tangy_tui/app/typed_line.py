@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from tangy_tui.app.game_commands import GameCommand
-from tangy_tui.app.inquiry_grammar import AsksHowLong, Question, read_question
+from tangy_tui.app.inquiry_grammar import (
+    AsksHowLong,
+    AsksWhoWaits,
+    Question,
+    asks_who_waits,
+    read_question,
+)
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.screen_grammar import Perform, read_screen
 from tangy_tui.app.time_grammar import asks_time
@@ -53,5 +59,7 @@ def read_typed(
         return commands[0]
     if asks_time(typed):
         return AsksHowLong()
+    if asks_who_waits(typed):
+        return AsksWhoWaits()
     word = read_question(typed, find_person) or read_screen(typed)
     return None if isinstance(word, Perform) and not can(word.action) else word

@@ -14,6 +14,7 @@ from tangy_tui.app.game_moment import game_moment
 from tangy_tui.app.inquiry_grammar import (
     WHO_IS_HERE,
     WHOSE_CARDS,
+    asks_who_waits,
     read_inquiry,
     read_question,
 )
@@ -42,7 +43,13 @@ from tangy_tui.text.staff_lines import (
     nothing_to,
 )
 from tangy_tui.text.staff_view import SEVERAL_WIN, person_words, played_words, won_words
-from tangy_tui.text.whose_turn import IN_DETAIL, about_lines, held_words, why_now_lines
+from tangy_tui.text.whose_turn import (
+    IN_DETAIL,
+    about_lines,
+    held_words,
+    waiting_lines,
+    why_now_lines,
+)
 
 
 class Inquiries:
@@ -76,6 +83,8 @@ class Inquiries:
         """Return the answer to a typed question; None if it is none."""
         if asks_time(text):
             return time_lines(self._controller)
+        if asks_who_waits(text):
+            return waiting_lines(game_moment(self._controller), self._name)
         try:
             about = read_question(text, self._find_person)
         except TangyError as error:

@@ -351,7 +351,7 @@ def waits_words(command: GameCommand, name: Callable[[str], str]) -> str:
             then = "and then stays away from that seat"
             return f"{name(person)} has left: Tangy finishes this, {then}."
         case ComesIn(person):
-            return f"{name(person)} is here: Tangy finishes this, and then goes there if asked."
+            return f"{name(person)} is here. Tangy finishes this first."
         case ClaimCard(card=card) if card:
             then = f"checks card {card}"
         case TakeBackCall(label) if label:

@@ -45,6 +45,7 @@ def time_words(
     now: datetime | None = None,
     *,
     until: bool = True,
+    lasted: bool = True,
 ) -> str:
     """Tell how long the game has lasted (s), and how much of the session's planned time is left.
 
@@ -54,8 +55,9 @@ def time_words(
         paused: how long the pause has lasted (s); None: the game is not paused.
         now: the local time of day; None: the game is not played in the time of the home.
         until: whether to tell the time of day at which the planned time is over.
+        lasted: whether to tell how long the game has lasted.
     """
-    told = [f"{clock_words(seconds)} so far"]
+    told = [f"{clock_words(seconds)} so far"] if lasted else []
     if paused is not None and paused >= 1:
         told.append(f"paused {clock_words(paused)}")
     if ends is not None and now is not None:
@@ -75,7 +77,7 @@ def time_facts(
     told = (
         time_words(seconds, ends, paused, now),
         time_words(seconds, ends, paused, now, until=False),
-        time_words(seconds, None, paused),
+        time_words(seconds, ends, paused, now, until=False, lasted=ends is None or now is None),
     )
     return told if paused is not None else told[:2]
 

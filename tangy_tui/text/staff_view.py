@@ -159,7 +159,7 @@ def obeys_words(behaviour: Behaviour, whom: str) -> str:
 
 def calls_first_words(calls: int, then: str) -> str:
     """Tell how many numbers Tangy calls before it goes to the first who asked, and why."""
-    return f"{counted(calls, 'number')} first, then {then}, as everybody waits for one."
+    return f"{counted(calls, 'number')} first, then {then}, as everybody waits for the next one."
 
 
 def looks_words(name: str, what: str) -> str:

@@ -44,10 +44,13 @@ if TYPE_CHECKING:
 NO_GAME = "No game is running."
 IN_DETAIL = "How Tangy decides"
 """The heading of the details for researchers, below the plain sentences."""
-WHOSE_TURN = "When does Tangy go there?"
+WHOSE_TURN = "When does Tangy come?"
 """The title of the answer about people."""
+WHO_WAITS = "Who waits for Tangy?"
+"""The title of the answer about everybody who waits."""
 FACTS_FOLLOW = " \N{MIDDLE DOT} "
 """What stands between a stage and its facts in the words of a situation."""
+_CALLS_FIRST = "Tangy calls {} first, because everybody waits for the next one."
 MOST_NAMES = 3
 """The most names in a sentence; the others are counted."""
 
@@ -66,6 +69,25 @@ def about_lines(control: GameController, about: AsksAbout, name: Name) -> list[s
         left_out = noted_words(StaffNote("not playing", person), name)
         told += [left_out] if turn is None else turn_lines(turn, name, now)
     return list(dict.fromkeys(told))
+
+
+def waiting_lines(moment: GameMoment, name: Name) -> list[str]:
+    """Tell who waits for Tangy, in the order in which it goes to them, and for how long."""
+    told = [held_words(moment)]
+    if moment.holder in ("idle", "over"):
+        return told
+    near = moment.with_robot
+    if near is not None:
+        there = _on_its_way(moment) if near.state == "comes" else "Tangy is with"
+        told.append(f"{there} {name(near.id)}{_because(moment, near, name)}.")
+    if not moment.waiting:
+        told.append("Nobody else waits." if near is not None else "Nobody waits for Tangy.")
+        return [one for one in told if one]
+    if moment.calls_first:
+        told.append(_CALLS_FIRST.format(counted(moment.calls_first, "number")))
+    for place, person in enumerate(moment.waiting, 1):
+        told.append(f"{place}. {_asked_words(person, moment, name)}")
+    return [one for one in told if one]
 
 
 def now_lines(activity: Activity, moment: GameMoment, name: Name) -> list[str]:
@@ -163,7 +185,7 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
         calls = counted(moment.calls_first, "number")
         returns = "goes back to the front and " if behaviour.returns else ""
         first_calls = f"Tangy {returns}calls {calls} before its next visit"
-        return f"{first_calls}, because everybody waits for one.", ""
+        return f"{first_calls}, because everybody waits for the next one.", ""
     if behaviour.returns:
         return "Tangy goes back to the front, because nobody asks any more.", ""
     if behaviour.calls and not moment.waiting:
@@ -274,8 +296,7 @@ def _asked_lines(turn: PersonTurn, name: Name) -> list[str]:
         told.append("Somebody has won, so nobody else gets a visit for now.")
         return told
     if moment.calls_first:
-        calls = counted(moment.calls_first, "number")
-        told.append(f"Tangy calls {calls} first, because everybody waits for one.")
+        told.append(_CALLS_FIRST.format(counted(moment.calls_first, "number")))
     claims = [name(one.id) for one in before if one.claims]
     names = _names([name(one.id) for one in before])
     if claims:

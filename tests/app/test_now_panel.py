@@ -105,7 +105,7 @@ def test_who_waits_for_some_numbers_is_told_so(taught: Path) -> None:
         assert not planned.supervision.over
     calls, first = world.tracker.calls_first, world.tracker.queue[0]
     words = next_line(ViewSource(world, planned.control, name))
-    then = f"{calls} numbers first, then {name(first)}, as everybody waits for one."
+    then = f"{calls} numbers first, then {name(first)}, as everybody waits for the next one."
     assert words == f"Next: call number. {then}"
     people = {one.id: one for one in planned.control.view().people}
     assert f", after {calls} numbers" in person_words(people[first])

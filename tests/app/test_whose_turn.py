@@ -34,7 +34,7 @@ from tangy_tui.app.game_moment import (
     turn_of,
     turns_from_now,
 )
-from tangy_tui.app.inquiry_grammar import AsksAbout, read_inquiry, read_question
+from tangy_tui.app.inquiry_grammar import AsksAbout, asks_who_waits, read_inquiry, read_question
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.staff_view import PersonNow
 from tangy_tui.app.teaching_grammar import read_teaching
@@ -189,14 +189,13 @@ def test_numbers_that_come_first_are_counted(taught: Path) -> None:
         planned.play(calls=len(world.called_now) + 1)
     calls, (first, second) = world.tracker.calls_first, world.tracker.queue[:2]
     told = text.about_lines(planned.control, AsksAbout((first,)), name)
-    assert f"Tangy calls {calls} numbers first, because everybody waits for one." in told
+    assert f"Tangy calls {calls} numbers first, because everybody waits for the next one." in told
     assert f"After that, {name(first)} is next." in told
     told = text.about_lines(planned.control, AsksAbout((second,)), name)
     assert f"Before {name(second)}, Tangy goes to {name(first)}." in told
     told = text.why_now_lines(planned.control, name)
-    assert told[0] == (
-        f"Tangy calls {calls} numbers before its next visit, because everybody waits for one."
-    )
+    first_calls = f"Tangy calls {calls} numbers before its next visit"
+    assert told[0] == f"{first_calls}, because everybody waits for the next one."
     assert told[1].startswith(name(first)) and told[1].endswith(" more wait, in this order.")
     planned.workspace.close()
 
@@ -452,6 +451,25 @@ def find_two(wanted: str) -> str:
     return wanted.casefold()
 
 
+ASK_WHO_WAITS = (
+    *("who waits", "Who is waiting?", "who has asked for help", "who's asked", "who wants help"),
+    *("who needs you", "does anybody need help?", "is anyone waiting", "who has their hand up"),
+    *("has anybody asked", "show me the queue", "who else is still waiting for a visit"),
+)
+
+
+@pytest.mark.parametrize("words", ASK_WHO_WAITS)
+def test_questions_about_everybody_who_waits_are_understood(words: str) -> None:
+    assert asks_who_waits(words)
+
+
+@pytest.mark.parametrize(
+    "words", ["who is next", "who is here", "who won", "ask for help", "who called bingo", "wait"]
+)
+def test_other_words_do_not_ask_who_waits(words: str) -> None:
+    assert not asks_who_waits(words)
+
+
 @pytest.mark.parametrize("activity", known_activities())
 def test_no_words_for_a_step_ask_about_the_game(activity: str) -> None:
     profile = load_activity(activity)
@@ -499,8 +517,26 @@ def test_who_and_what_comes_before_a_person_is_told_in_order() -> None:
     ]
 
 
+def test_everybody_who_waits_is_told_in_the_order_of_the_visits() -> None:
+    ann, ben, cleo = (PersonNow(one, "asks", turn=1, waits=40.0) for one in ("ann", "ben", "cleo"))
+    comes = replace(ann, state="comes", waits=None)
+    moment = GameMoment(people=(comes, ben, cleo), waiting=(ben, cleo), with_robot=comes)
+    assert text.waiting_lines(moment, str.title) == [
+        "Tangy is on its way to Ann, because Ann comes first.",
+        "1. Ben asked 40 s ago.",
+        "2. Cleo asked 40 s ago.",
+    ]
+    assert text.waiting_lines(
+        GameMoment(people=(ann,), waiting=(ann,), calls_first=2), str.title
+    ) == [
+        text_of_calls(2),
+        "1. Ann asked 40 s ago.",
+    ]
+    assert text.waiting_lines(GameMoment(), str.title) == ["Nobody waits for Tangy."]
+
+
 def text_of_calls(count: int) -> str:
-    return f"Tangy calls {count} numbers first, because everybody waits for one."
+    return f"Tangy calls {count} numbers first, because everybody waits for the next one."
 
 
 @pytest.mark.parametrize(

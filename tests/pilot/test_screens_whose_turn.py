@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,7 +14,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.text.cards import WHOSE
 from tangy_tui.text.typed_commands import WHO_IS_HERE
-from tangy_tui.text.whose_turn import IN_DETAIL, WHOSE_TURN
+from tangy_tui.text.whose_turn import IN_DETAIL, WHO_WAITS, WHOSE_TURN
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
@@ -74,7 +75,8 @@ async def test_why_tells_first_in_plain_words_what_tangy_does_and_who_waits(
         told, step = plain_lines(pilot)
         assert told == paused and step.startswith(calls)
         assert paused in shown(pilot) and calls in shown(pilot) and IN_DETAIL in shown(pilot)
-        await pilot.press("escape")
+        await pilot.press("enter")  # opens no demonstration
+        await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
         await typed(pilot, f"help {workspace.name('user2')}")
         await until_shown(pilot, lambda: "user2" in live(pilot).world.queue)
         await typed(pilot, f"go to {workspace.name('user3')}")
@@ -85,6 +87,12 @@ async def test_why_tells_first_in_plain_words_what_tangy_does_and_who_waits(
         first, second = workspace.name("user2"), workspace.name("user3")
         goes = f"Tangy goes to {first} next, because {first} has waited longest."
         assert plain_lines(pilot) == [paused, goes, f"{second} waits, too."]
+        assert re.search(r"why, at \d\d:\d\d:\d\d", shown(pilot))
+        await pilot.press("escape")
+        await typed(pilot, "who has asked for help?")
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        assert WHO_WAITS in shown(pilot)
+        assert f"1. {first} " in shown(pilot) and f"2. {second} " in shown(pilot)
 
 
 @pytest.mark.slow

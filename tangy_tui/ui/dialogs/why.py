@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.cells import cell_len
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from tangy_profiles.activity import Activity
@@ -56,7 +57,8 @@ class WhyDialog(PageDialog):
     """The situation, the votes, the steps behind a decision, and the draws of a strategy.
 
     Up and down go from step to step and scroll; Enter opens the step in its demonstration. The
-    newest steps come first; if there are many, Enter on the last line shows the others.
+    newest steps come first; if there are many, Enter on the last line shows the others. In a game,
+    where staff read plain sentences first, Enter closes the dialog until they go to a step.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -67,8 +69,8 @@ class WhyDialog(PageDialog):
         "and what its last step rests on: how sure Tangy is of each "
         "behaviour, which demonstrated steps say so or say otherwise, and for a way of speaking "
         "the number that was drawn from what is believed of each. Up and down choose a step and "
-        "scroll; Enter opens it where it was demonstrated. The newest steps come first; Enter on "
-        "the last line shows the others."
+        "scroll; then Enter opens it where it was demonstrated. The newest steps come first; "
+        "Enter on the last line shows the others."
     )
 
     def __init__(
@@ -91,8 +93,7 @@ class WhyDialog(PageDialog):
             remarks: sentences before the others, such as who answered what.
             coming: the step that follows the explained one; it is explained first.
         """
-        opens = "enter opens a step   " if why.steps else ""
-        super().__init__(clean(title), f"{opens}esc closes")
+        super().__init__(clean(title))
         self._workspace = workspace
         self._why = why
         self._choice = choice
@@ -101,9 +102,19 @@ class WhyDialog(PageDialog):
         """The next step of the game, explained before the last one."""
         self.plain: Sequence[str] = ()
         """What Tangy does now and why, in plain sentences, before all details."""
+        self.at = ""
+        """The time of day of these sentences; "": the game is played in simulated time."""
         self._whole = set[int]()  # the groups of steps that are shown in full
         library = read_library(workspace.store, workspace.activity.name)
         self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
+
+    def compose(self) -> ComposeResult:
+        """Lay out the page, with the keys that work at first, and the time of a live answer."""
+        opens = "enter opens a step   " if self._why.steps and not self.plain else ""
+        self._keys = f"{opens}esc closes"
+        if self.at:
+            self._title = f"{self._title}, at {self.at}"
+        yield from super().compose()
 
     @property
     def why(self) -> DecisionReasons:
@@ -111,8 +122,11 @@ class WhyDialog(PageDialog):
         return self._why
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
-        """Open a step in its demonstration."""
+        """Open a step in its demonstration; close the plain sentences if none was gone to."""
         event.stop()
+        if self.plain and not event.page.moved:
+            self.action_close()
+            return
         if event.index >= len(self._why.steps):
             self._whole.add(event.index - len(self._why.steps))
             page = self.query_one(Page)

@@ -6,12 +6,21 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.app.inquiry_grammar import AsksHowLong, Question
+from tangy_profiles.game_world import SIMULATED
+from tangy_tui.app.game_moment import game_moment
+from tangy_tui.app.inquiry_grammar import AsksHowLong, AsksWhoWaits, Question
 from tangy_tui.text.decisions import WHY_NOW
 from tangy_tui.text.games import ANOTHER_DETAIL, NOTHING_DECIDED
 from tangy_tui.text.planned_time import HOW_LONG, left_words, time_lines
 from tangy_tui.text.register import staff_names
-from tangy_tui.text.whose_turn import WHOSE_TURN, about_lines, why_now_lines
+from tangy_tui.text.times import local_now
+from tangy_tui.text.whose_turn import (
+    WHO_WAITS,
+    WHOSE_TURN,
+    about_lines,
+    waiting_lines,
+    why_now_lines,
+)
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.screens.play_panels import PlayPanels
@@ -35,6 +44,8 @@ class PlayAnswers(PlayPanels):
         dialog = self._faults.dialog(fault.id) if fault else self.picture.why(chosen, coming)
         if isinstance(dialog, WhyDialog):
             dialog.plain = plain
+            if plain and self._supervision.world.played_in != SIMULATED:
+                dialog.at = f"{local_now():%H:%M:%S}"
         if dialog is None and plain:
             dialog = MessageDialog("\n".join(plain), WHY_NOW)
         if dialog is not None:
@@ -43,12 +54,16 @@ class PlayAnswers(PlayPanels):
             self._tell_now(NOTHING_DECIDED, "dim")
 
     def answer_about(self, about: Question) -> None:
-        """Tell when Tangy goes to the people whom a typed question names, or how long you play."""
+        """Answer a typed question: about people's turns, who waits, or how long you play."""
         if isinstance(about, AsksHowLong):
             self.app.push_screen(MessageDialog("\n".join(time_lines(self.control)), HOW_LONG))
             return
-        told = about_lines(self.control, about, staff_names(self._workspace.name))
-        self.app.push_screen(MessageDialog("\n".join(told), WHOSE_TURN))
+        name = staff_names(self._workspace.name)
+        if isinstance(about, AsksWhoWaits):
+            told, title = waiting_lines(game_moment(self.control), name), WHO_WAITS
+        else:
+            told, title = about_lines(self.control, about, name), WHOSE_TURN
+        self.app.push_screen(MessageDialog("\n".join(told), title))
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Explain the step chosen with Enter."""

@@ -65,6 +65,8 @@ class Page(Choosable):
         self._write = write
         self._lines: dict[int, range] = {}  # of each choice that is shown, by its position
         self._choices: list[int] = []  # their indices
+        self.moved = False
+        """Whether a key has moved the cursor, or scrolled."""
 
     @property
     def chosen(self) -> int | None:
@@ -90,6 +92,7 @@ class Page(Choosable):
 
     def action_choose(self, by: int) -> None:
         """Move the cursor to a choice in sight; otherwise scroll towards it."""
+        self.moved = True
         if abs(by) > PAGE:
             super().action_choose(by)
             self.scroll_to(y=0 if by < 0 else self.max_scroll_y, animate=False, force=True)
