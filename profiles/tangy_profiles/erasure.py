@@ -33,6 +33,9 @@ WHOSE = frozenset(("teacher", "by", "who"))
 OWN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
 """The kinds of event whose `what` is one of Tangy's own words."""
 
+SAID = frozenset(("told", "heard", "noted"))
+"""What staff did if the `detail` of their action holds what a person said, or a note in words."""
+
 MOST_SPELLINGS = 128
 """The most spellings of a name with special letters; beyond that, fewer mixtures are searched."""
 
@@ -133,7 +136,8 @@ class NameEraser:
         In a typed or spoken command for the person, every part of the name is erased too, as people
         say "Rosa" or "Frau Weber".
         """
-        left = {key: self._value(value, _kept_in(kind, key)) for key, value in body.items()}
+        did = body.get("did")
+        left = {key: self._value(value, _kept_in(kind, key, did)) for key, value in body.items()}
         heard = left.get("heard")
         if left.get("target") == self.stand_in and isinstance(heard, str):
             heard = self._parts.sub(self.stand_in, heard)
@@ -224,8 +228,8 @@ class NameEraser:
         return sorted(found, key=_longest)
 
 
-def _kept_in(kind: str, key: str) -> str:
-    """Return how a key of a body may contain a name ("": not at all).
+def _kept_in(kind: str, key: str, did: object) -> str:
+    """Return how a key of a body may contain a name ("": not at all); `did` is its key `did`.
 
     "typed" is typed or spoken text, "running" is text by people or an unknown key, and "exact" a
     sentence of Tangy.
@@ -236,6 +240,10 @@ def _kept_in(kind: str, key: str) -> str:
         return "exact"
     if key in FREE_TEXT:
         return "" if key == "what" and kind in OWN_WORDS else "running"
+    if (kind, key) == ("answer not clear", "said"):
+        return "running"
+    if (kind, key) == ("staff action", "detail") and did in SAID:
+        return "running"
     known = keys_of(kinds()[kind]) if kind in kinds() else frozenset()
     return "" if key in known or key in WHOSE else "running"
 

@@ -80,6 +80,36 @@ def test_erasing_a_body_changes_only_texts() -> None:
     assert NameEraser(["Delete"], "user2").body("demonstrations edited", chosen) == chosen
 
 
+@pytest.mark.parametrize(
+    ("kind", "body", "key", "after"),
+    [
+        ("staff action", {"did": "told"}, "detail", "user2 sang it"),
+        ("staff action", {"did": "heard"}, "detail", "user2 sang it"),
+        ("staff action", {"did": "noted"}, "detail", "user2 sang it"),
+        ("staff action", {"did": "patterns"}, "detail", "Rosa sang it"),
+        ("staff action", {"did": "told"}, "person", "Rosa sang it"),
+        ("answer not clear", {}, "said", "user2 sang it"),
+        ("answer not clear", {}, "fact", "Rosa sang it"),
+        ("game ended", {}, "stopped", "user2 sang it"),
+        ("void", {}, "why", "user2 sang it"),
+        ("taken back", {}, "what", "Rosa sang it"),
+        ("fault", {}, "console", "user2 sang it"),
+        ("demonstration step", {}, "heard", "user2 sang it"),
+        ("of another version", {}, "anything", "user2 sang it"),
+    ],
+)
+def test_a_name_is_erased_where_people_spoke_or_wrote(
+    kind: str, body: dict[str, str], key: str, after: str
+) -> None:
+    assert ROSA.body(kind, {**body, key: "Rosa sang it"}) == {**body, key: after}
+
+
+def test_a_name_that_stays_as_that_of_staff_is_counted() -> None:
+    for key in ("teacher", "by", "who"):
+        assert ROSA.is_left({key: "Rosa"}) and not ROSA.is_left({key: "Ada"})
+    assert not ROSA.is_left({"heard": "go to rosa", "by": 7})
+
+
 def test_a_misspelt_name_in_a_command_is_erased() -> None:
     eraser = NameEraser(["Rosa Weber"], "user2", commands={"go", "to", "please"})
     for heard in ("Go to rsoa", "go to Frau Wbeer please", "go to roza 2", "go to réosa"):
