@@ -107,7 +107,7 @@ def did_words(noted: Noted, name: Name) -> str:
         case "claim wrong":
             return f"had {card_words(detail, person)} checked: it does not win yet"
         case "patterns":
-            return f"let the game go on for: {detail}"
+            return f"chose what is played for: {detail}"
         case "rules":
             return f"chose: {detail}"
         case "came":
@@ -185,7 +185,7 @@ def action_words(noted: Noted, name: Name) -> str:
         case "claim wrong":
             return f"{card_words(detail, person)} was checked: it does not win yet"
         case "patterns":
-            return f"the game went on for: {detail}"
+            return f"what is played for was chosen: {detail}"
         case "rules":
             return f"chosen: {detail}"
         case "came":

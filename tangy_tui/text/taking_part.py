@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 PLAYED_FOR = "Played for"
 WON, NOBODY_WON, NOT_REACHED = "Who won", "nobody won", "not reached"
+NOBODY_YET, YET = "nobody has won yet", " yet"
+"""Of a game that is still going on, or was broken off."""
 MOST_GAMES = 24
 """Of more games a report does not tell one by one what they were played for."""
 
@@ -37,8 +39,9 @@ def played_for_rows(session: Session) -> list[tuple[str, str]]:
 
 
 def _pattern_words(replay: GameReplay, one: PlayedFor, name: Name) -> str:
-    who = wins_words(replay, one.wins, name) if one.wins else NOBODY_WON
-    who = who if one.reached else NOT_REACHED
+    yet = "" if replay.game.ended else YET
+    who = wins_words(replay, one.wins, name) if one.wins else NOBODY_YET if yet else NOBODY_WON
+    who = who if one.reached else f"{NOT_REACHED}{yet}"
     return f"{pattern_words(replay.activity, (one.pattern,))}: {who}" if one.pattern else who
 
 

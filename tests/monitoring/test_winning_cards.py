@@ -77,6 +77,12 @@ def test_the_report_names_the_card_and_the_call_of_each_win() -> None:
     ]  # fmt: skip
 
 
+def test_a_game_that_goes_on_has_no_winner_yet() -> None:
+    replay = replay_of(call(1, 5), ended=None)
+    assert words(replay) == "a line: nobody has won yet; then two lines: not reached yet"
+    assert words(replay_of(call(1, 5))) == "a line: nobody won; then two lines: not reached"
+
+
 def test_winners_of_the_same_call_share_it() -> None:
     first = replace(ON, what="others first")
     replay = replay_of(call(1, 5), READ, win(2, "ann"), first, CLAIM, win(3, "bob"))
