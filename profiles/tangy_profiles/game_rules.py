@@ -181,6 +181,14 @@ class Patterns:
         """The deck whose cards win by the current pattern."""
         return self.deck if self.present is None else self.present.on(self.deck)
 
+    @property
+    def chosen(self) -> list[Pattern]:
+        """The pattern to play for and those that follow, if staff chose any."""
+        if self.present is not None:
+            return [self.present, *self.left]
+        usual = [one for one in self.rules.patterns if one.on(self.deck) == self.deck]
+        return [*usual[:1], *self.left] if self.left else []
+
     def follow_with(self, names: Sequence[str]) -> None:
         """Choose the patterns after the current one."""
         self.left = [self.rules.pattern(name) for name in names]

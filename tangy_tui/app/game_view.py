@@ -107,9 +107,7 @@ def _view_now(control: GameController) -> GameView | None:
 
 def _patterns(world: object) -> tuple[str, ...]:
     patterns = world.patterns if isinstance(world, PlannedGame) else None
-    if patterns is None or patterns.present is None:
-        return ()
-    return tuple(one.label for one in (patterns.present, *patterns.left))
+    return () if patterns is None else tuple(one.label for one in patterns.chosen)
 
 
 def _in_whole_seconds(person: PersonNow) -> PersonNow:

@@ -56,17 +56,15 @@ HAS_WON = "has won"
 
 def played_words(patterns: Patterns | None) -> str:
     """Name the pattern to play for, and those that follow."""
-    if patterns is None or patterns.present is None:
-        return ""
-    return labels_words([one.label for one in (patterns.present, *patterns.left)])
+    return "" if patterns is None else labels_words([one.label for one in patterns.chosen])
 
 
 def played_facts(patterns: Patterns) -> str | tuple[str, ...]:
     """Tell the same, and in fewer words for less room."""
-    words, more = played_words(patterns), len(patterns.left)
-    if patterns.present is None or not more:
+    words, chosen = played_words(patterns), patterns.chosen
+    if len(chosen) < 2:
         return words
-    return words, f"for {patterns.present.label}, then {more} more"
+    return words, f"for {chosen[0].label}, then {len(chosen) - 1} more"
 
 
 def winners_facts(names: Sequence[str]) -> str | tuple[str, ...]:

@@ -9,7 +9,7 @@ import pytest
 
 from tangy_profiles.cards import winning_state
 from tangy_profiles.game_rules import GamePlan
-from tangy_tui.app.game_commands import EndGame
+from tangy_tui.app.game_commands import ChoosePatterns, EndGame
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.inquiries import Inquiries
@@ -18,6 +18,8 @@ from tangy_tui.text.staff_view import (
     SEVERAL_WIN,
     SEVERAL_WINNERS,
     person_words,
+    played_facts,
+    played_words,
     winners_facts,
 )
 from tangy_tui.text.watching import now_lines
@@ -66,6 +68,18 @@ def test_several_winners_are_told_where_staff_look(
     view = view_of(planned.control)
     assert view is not None
     assert f"{SEVERAL_WINNERS}, for a line" in " ".join(now_lines(view, None, str))
+
+
+def test_patterns_that_staff_choose_in_a_game_are_told_before_the_first_win(
+    planned: Planned,
+) -> None:
+    planned.begin(GamePlan())
+    assert played_words(planned.world.patterns) == ""  # it is played as usual
+    planned.control.apply(ChoosePatterns(("two lines", "full card")))
+    told = "for a line, then two lines, then the full card"
+    assert played_facts(planned.world.patterns) == (told, "for a line, then 2 more")
+    view = view_of(planned.control)
+    assert view is not None and view.patterns == ("a line", "two lines", "the full card")
 
 
 def test_who_has_won_already_is_told(planned: Planned) -> None:
