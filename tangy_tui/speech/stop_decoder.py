@@ -7,8 +7,8 @@ words of stopping somewhere. If the best path does not stop by the rules, the st
 a command that the other decoders hear has priority: a synthetic or foreign voice is often
 recognised as "tell the robot" before "stop the robot".
 
-If the sound fits badly, the utterance is decoded again with the means of other voices
-(`other_voices`), and the search that fits better is used.
+If the sound fits badly and no stop is certain, the utterance is decoded again with the means of
+other voices (`other_voices`), and the search that fits better is used.
 """
 
 from __future__ import annotations
@@ -87,22 +87,22 @@ class StopDecoder:
         """Return the sentence of an utterance (16 kHz mono s16le) that stops the robot."""
         if self._search is None:
             return HeardStop()
-        guesses = self._guesses(cleared(pcm))
+        pcm = cleared(pcm)
+        guesses, score = likeliest(self._search, pcm, "all")
+        heard = self._judged(guesses)
+        if heard.sure or score >= FITS:
+            return heard
+        others, other_score = likeliest(self._other, pcm, "all")
+        return self._judged(others) if other_score > score else heard
+
+    def _judged(self, guesses: tuple[str, ...]) -> HeardStop:
+        """Return the stop among the likeliest sentences, best first."""
         if not guesses:
             return HeardStop()
         likely = sum(likelihood(guess, self._game) for guess in guesses) / len(guesses)
         certain = stops(words := guesses[0], self._game)
         needed = EACH_WORD * min(max(len(words.split()), FEWEST), MOST)
         return HeardStop(words, certain) if likely + certain * BY_RULES >= needed else HeardStop()
-
-    def _guesses(self, pcm: bytes) -> tuple[str, ...]:
-        """Return the likeliest sentences with the means that fit better."""
-        guesses, score = likeliest(self._search, pcm, "all")
-        if score < FITS:
-            others, other_score = likeliest(self._other, pcm, "all")
-            if other_score > score:
-                return others
-        return guesses
 
 
 def _sayable(texts: Sequence[str], known: Known) -> list[str]:

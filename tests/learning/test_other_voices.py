@@ -32,10 +32,10 @@ FORMANT_STOPS = (
 
 
 def heard_with(
-    monkeypatch: pytest.MonkeyPatch, usual: float, other: float
+    monkeypatch: pytest.MonkeyPatch, usual: float, other: float, words: str = "the dog"
 ) -> tuple[HeardStop, list[str]]:
-    """Return what is heard if the other means alone hear a stop, and the means that were used."""
-    paths = {"usual": ("the dog", usual, 0.0), "other": ("hey stop", other, 0.0)}
+    """Return what is heard if the other means hear a stop, and the means that were used."""
+    paths = {"usual": (words, usual, 0.0), "other": ("hey stop", other, 0.0)}
     used: list[str] = []
 
     def best_path(search: Any, *_: object) -> tuple[str, float, float]:
@@ -55,6 +55,11 @@ def heard_with(
 
 def test_sound_that_fits_is_decoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
     assert heard_with(monkeypatch, FITS, 0.0) == (HeardStop(), ["usual"])
+
+
+def test_a_certain_stop_is_not_decoded_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard = heard_with(monkeypatch, BADLY, 0.0, "stop the robot")
+    assert heard == (HeardStop("stop the robot", sure=True), ["usual"])
 
 
 @pytest.mark.parametrize(("better", "stops"), [(0.1, True), (-0.1, False)])
