@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -38,6 +39,8 @@ class ClaimNow:
     """Whether it waits since before an interruption, until staff let the game go on."""
     goes: bool = False
     """Whether Tangy goes to the person because of it; not yet while it finishes its step."""
+    later: bool = False
+    """Whether the card does not win, and the group hears so only after a celebration."""
 
 
 class ClaimControls:
@@ -49,6 +52,10 @@ class ClaimControls:
         self._note = note
         self._by = by
         self._claimed: ClaimNow | None = None
+        self._winning: tuple[ClaimNow, ...] = ()
+        """The claims of this game that win, each until the winner is visited."""
+        self._untold: list[int] = []
+        """Cards that do not win, of which the group hears after the celebration."""
         self._unchecked: list[ClaimCard] = []
         """The claims that were made before an interruption, and are still to be checked."""
         self._late: list[StaffNote] = []
@@ -77,14 +84,18 @@ class ClaimControls:
     def take_up(self, claims: Iterable[tuple[int, str]]) -> None:
         """Keep the claims of an interrupted game, to check them when it goes on."""
         self._unchecked, self._late = [], []
+        self._winning, self._untold = (), []
         for card, person in claims:
             claim = ClaimCard(card, person)
             if (judged := self.judged(claim)) is not None:
-                self._claimed = replace(judged, resumed=True)
+                self._keep(replace(judged, resumed=True))
             self._unchecked.append(claim)
 
     def check_left(self) -> list[Event]:
-        """Check the claims that were made before an interruption; see `late_notes`."""
+        """Check the claims that were made before an interruption; see `late_notes`.
+
+        Also tell the group of the cards that did not win, once a winner was celebrated.
+        """
         told: list[Event] = []
         world = self.world
         while world is not None and self._unchecked:
@@ -93,7 +104,25 @@ class ClaimControls:
                     self._late.append(one)
                 else:
                     told.append(one)
+        if world is not None and self._untold and not self._celebrates(world):
+            self._tell_left(world)
         return told
+
+    def _tell_left(self, world: PlannedGame) -> None:
+        """Tell the group of the cards that it was not told of during a celebration."""
+        present, wrong = world.patterns.present, world.activity.rules.claim_wrong
+        cards = [card for card in self._untold if not world.wins(card)]
+        self._untold = []
+        if cards and (said := joined(wrong, cards, present.label if present else "")):
+            world.announce(said)
+            self._late.append(StaffNote("claims told", words=said))
+
+    def _celebrates(self, world: PlannedGame) -> bool:
+        """Return whether a winner is still to be celebrated, or others may have won as well."""
+        waits = any(not one.goes and self._is_news(world, one) for one in self._winning)
+        tracker = world.tracker
+        due = world.winner or tracker.finished or world.vouched & {*tracker.queue}
+        return waits or bool(due)
 
     def late_notes(self) -> list[StaffNote]:
         """Return the results of claims from before an interruption, each once."""
@@ -108,7 +137,7 @@ class ClaimControls:
     def _claim_early(self, claim: ClaimCard) -> None:
         """Judge and log a claim at once; it is checked, and the group told, in its turn."""
         if (judged := self.judged(claim)) is not None:
-            self._claimed = judged
+            self._keep(judged)
             self._note(
                 "claim made", person=judged.person, detail=str(judged.card), calls=self._calls
             )
@@ -120,6 +149,15 @@ class ClaimControls:
             claim = self.with_card(claim)
             if claim.card == claimed.card and claim.person in ("", claimed.person):
                 self._claimed = None
+        waiting = [one for one in self._winning if one.told is None]
+        gone = [one for one in waiting if one.card == self.with_card(claim).card]
+        self._winning = tuple(one for one in self._winning if one not in gone)
+
+    def _keep(self, claimed: ClaimNow) -> None:
+        """Keep the last claim, and all that win."""
+        self._claimed = claimed
+        others = tuple(one for one in self._winning if one.card != claimed.card)
+        self._winning = (*others, claimed) if claimed.kind == "claim right" else others
 
     def judged(self, claim: ClaimCard) -> ClaimNow | None:
         """Return the result of a claim by the numbers called so far; None if it is refused."""
@@ -130,25 +168,40 @@ class ClaimControls:
         kind: ClaimKind | None = self._verdict(world, claim.card, holder)
         if kind == "claim wrong" and numbers is not None and {*world.calling} & {*numbers}:
             kind = None
-        return ClaimNow(claim.card, holder, kind)
+        later = kind == "claim wrong" and self._celebrates(world)
+        return ClaimNow(claim.card, holder, kind, later=later)
 
     @property
     def claim(self) -> ClaimNow | None:
-        """The last claim, while it is news; or None.
+        """The last claim that wins, or else the last one, while it is news; or None."""
+        claims = self.claims
+        winning = [one for one in claims if one.kind == "claim right"]
+        return (winning or (None, *claims))[-1]
 
-        It is news until the next call, and for a while; a winning one at most until the visit.
-        """
+    @property
+    def claims(self) -> tuple[ClaimNow, ...]:
+        """The claims that win and are not celebrated yet, and the last one while it is news."""
         claimed, world = self._claimed, self.world
         if claimed is None or world is None or self._idle:
-            return None
+            return ()
+        others = [one for one in self._winning if one is not claimed]
+        return tuple(one for one in (*others, claimed) if self._is_news(world, one))
+
+    def _is_news(self, world: PlannedGame, claimed: ClaimNow) -> bool:
+        """Return whether a claim is news: until the next call, and for a while.
+
+        If it wins, it is news until the visit, however long that takes.
+        """
         if claimed.told is None:
-            return claimed
+            return True
+        if claimed.game != self._supervision.game.game:
+            return False
+        if claimed.goes:
+            there = world.tracker.place == claimed.person and world.arrived
+            return not there and claimed.person in world.vouched & {*world.tracker.queue}
         ago, calls = world.seconds - claimed.told, len(world.called_now)
         over = ago >= LONGEST_CLAIM or (ago >= CLAIM_SECONDS and calls > claimed.calls)
-        before = claimed.game != self._supervision.game.game
-        there = world.tracker.place == claimed.person and world.arrived
-        visited = claimed.goes and (there or claimed.person not in world.vouched)
-        return None if over or before or visited else claimed
+        return not over
 
     @staticmethod
     def _verdict(world: PlannedGame, card: int, holder: str) -> ClaimKind:
@@ -212,16 +265,30 @@ class ClaimControls:
             kind, rules.claim_wrong
         )
         self._note(kind, person=holder or "", detail=str(card), calls=self._calls)
-        self._claimed = claimed = ClaimNow(
-            card, holder, kind, world.seconds, len(world.called_now), self._supervision.game.game
-        )
+        calls, game = len(world.called_now), self._supervision.game.game
+        later = kind == "claim wrong" and self._celebrates(world)
+        claimed = ClaimNow(card, holder, kind, world.seconds, calls, game, later=later)
+        self._keep(claimed)
+        people = (holder,) if holder else ()
+        if later:  # "let us play on" would deny that somebody has won
+            self._untold = [one for one in self._untold if one != card] + [card]
+            return [StaffNote(kind, str(card), people=people)]
         said = words.format(card=card, pattern=pattern.label if pattern else "")
         world.announce(said)
-        people = (holder,) if holder else ()
         told: list[Result] = [StaffNote(kind, str(card), said, people)]
         if kind != "claim right":
             return told
         told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
+        goes = replace(claimed, goes=True)
+        self._winning = tuple(goes if one is claimed else one for one in self._winning)
         if self._claimed is claimed:  # staff may have typed another one meanwhile
-            self._claimed = replace(claimed, goes=True)
+            self._claimed = goes
         return told
+
+
+def joined(words: str, cards: Sequence[int], pattern: str) -> str:
+    """Join the announcements of several cards; what follows the card's sentence is said once."""
+    parts = re.fullmatch(r"(.*\{card\}[^.!?]*[.!?]*)\s*(.*)", words, re.DOTALL)
+    each, then = parts.groups() if parts else (words, "")
+    said = [each.format(card=card, pattern=pattern) for card in cards]
+    return " ".join(filter(None, (*dict.fromkeys(said), then.format(card="", pattern=pattern))))

@@ -165,9 +165,10 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             late = "wins, too, but another card was first, and there is one winner"
             return f"{_whose_card(noted, name)} {late}. Tangy tells everybody: {noted.words}"
         case "claim wrong":
-            return (
-                f"{_whose_card(noted, name)} does not win yet. Tangy tells everybody: {noted.words}"
-            )
+            then = f"Tangy tells everybody: {noted.words}" if noted.words else CELEBRATES_FIRST
+            return f"{_whose_card(noted, name)} does not win yet. {then}"
+        case "claims told":
+            return f"Tangy tells everybody: {noted.words}"
         case "card given":
             before = "".join(f" It counted as {name(one)}'s until now." for one in noted.people)
             return f"{name(about)} has card {noted.words}.{before}"
@@ -321,6 +322,10 @@ WHO_NEEDS_HELP = "Who needs help?"
 BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
+CELEBRATES_FIRST = "Tangy celebrates the winner first."
+"""Why Tangy does not tell everybody that a card does not win."""
+
+
 def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = "") -> str:
     """Tell the result of a claim while it is news, and what Tangy does about it.
 
@@ -339,6 +344,8 @@ def claimed_words(claimed: ClaimNow, name: Callable[[str], str], calling: str = 
             done = f"{card} does not win yet."
         case forgotten:
             assert_never(forgotten)
+    if claimed.later:
+        return done if told else f"{done} {CELEBRATES_FIRST}"
     if claimed.resumed and not told:
         return f"{done} Tangy tells everybody as soon as the game goes on."
     return done if told else f"{done} Tangy finishes this, then tells everybody."

@@ -59,11 +59,9 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
 
 
 def news_line(shown: ViewSource) -> str:
-    """Tell the result of the last claim; "" if it is no news."""
-    claimed = shown.control.plan.claim
-    if claimed is None:
-        return ""
-    return claimed_words(claimed, shown.name, shown.control.plan.calling)
+    """Tell which claims win, and the result of the last one; "" if none is news."""
+    plan = shown.control.plan
+    return " ".join(claimed_words(one, shown.name, plan.calling) for one in plan.claims)
 
 
 def next_line(shown: ViewSource) -> str:
