@@ -6,13 +6,16 @@ It is derived from the log. Times are in s since the game began.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_records import GameChange
+from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.past_game import OpenRequests
+from tangy_tui.monitoring.games import SESSION_GAP
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
@@ -35,20 +38,26 @@ LEAST_WAIT = 1.0
 """Who asked less than so many s before the end of a game did not wait."""
 
 
+class Wait(NamedTuple):
+    """A request for help: how long it was open (s), and whether Tangy came or it was closed."""
+
+    seconds: float
+    over: bool = True
+
+
 @dataclass(slots=True)
 class Attention:
     """The attention to one person in one game or several.
 
-    `waits` are the times in s from each request until Tangy arrived or the request was closed;
-    `open` are those of requests still open at the end. `spans` are the begin and end of all of
-    these in s since the game began; those of several games are not added up. `seconds` is Tangy's
-    time with the person, `helped` counts its behaviours there, and `won` the person's wins.
+    `asked` are the person's requests in order of time. A request that goes over into the next game
+    counts in the game in which it ends. `spans` are the begin and end of each wait in s since the
+    game began; those of several games are not added up. `seconds` is Tangy's time with the person,
+    `helped` counts its behaviours there, and `won` the person's wins.
     `could_visit`: Tangy visits people in that game, or in one of several.
     """
 
     id: str
-    waits: list[float] = field(default_factory=list)
-    open: list[float] = field(default_factory=list)
+    asked: list[Wait] = field(default_factory=list)
     spans: list[tuple[float, float]] = field(default_factory=list)
     visits: int = 0
     seconds: float = 0.0
@@ -62,20 +71,24 @@ class Attention:
         """Whether Tangy could have visited the person, and did not."""
         return self.could_visit and not self.visits
 
-    def open_in(self, found: Mapping[str, Attention]) -> list[float]:
-        """Return the waits (s) that were open at the end of a game, without the shortest."""
-        one = found.get(self.id)
-        return [] if one is None else [wait for wait in one.open if wait >= LEAST_WAIT]
+    @property
+    def waits(self) -> list[float]:
+        """The times (s) from each request until Tangy arrived or the request was closed."""
+        return [wait.seconds for wait in self.asked if wait.over]
+
+    @property
+    def open(self) -> list[float]:
+        """How long (s) each request had been open when the game ended."""
+        return [wait.seconds for wait in self.asked if not wait.over]
 
     @property
     def requests(self) -> int:
         """How often the person asked for help."""
-        return len(self.waits) + len(self.open)
+        return len(self.asked)
 
     def add(self, other: Attention) -> None:
         """Add the same person's attention in another game."""
-        self.waits += other.waits
-        self.open += other.open
+        self.asked += other.asked
         self.visits += other.visits
         self.seconds += other.seconds
         self.last_visit = other.last_visit if other.last_visit is not None else self.last_visit
@@ -98,9 +111,58 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
 
     People who were away for the whole game are left out, unless they had a request or a visit.
     """
+    return attention_by_game([replay])[0]
+
+
+def attention_by_game(replays: Iterable[GameReplay]) -> list[dict[str, Attention]]:
+    """Return the attention to each person in each of some games, oldest first."""
+    games = list[tuple[GameReplay, dict[str, Attention]]]()
+    asked: dict[str, float] = {}  # when the open requests were made, in s since the game began
+    for replay in replays:
+        before, last = asked, games[-1] if games else None
+        asked = {} if last is None else _gone_over(last[0], replay, before)
+        if last is not None:
+            _leave_open(*last, {who: at for who, at in before.items() if who not in asked})
+        games.append((replay, _attend(replay, asked)))
+    if games:
+        _leave_open(*games[-1], asked)
+    for replay, found in games:
+        for person in replay.game.away & found.keys():
+            if not (found[person].requests or found[person].visits):
+                del found[person]
+    return [found for _, found in games]
+
+
+def _gone_over(last: GameReplay, replay: GameReplay, asked: dict[str, float]) -> dict[str, float]:
+    """Return the open requests of a game with which the next one begins, in s of the next one.
+
+    In a game of real people, who asked in vain before it still asks in its first step.
+    """
+    game, ended = replay.game, last.game.ended
+    if ended is None or game.world == SIMULATED or game.world != last.game.world:
+        return {}
+    between = (game.at - ended).total_seconds()
+    if between > SESSION_GAP:
+        return {}
+    asking = set(game.people) - game.away
+    if done := replay.done[:1]:
+        users = [*done[0].state.users, *done[0].after.users]
+        asking = {user.id for user in users if user.request == "AR"}
+    over = last.seconds + max(0.0, between)
+    there = asking & set(game.people)
+    return {person: since - over for person, since in asked.items() if person in there}
+
+
+def _leave_open(replay: GameReplay, found: dict[str, Attention], asked: dict[str, float]) -> None:
+    """Record requests that were still open when a game ended."""
+    for person, since in asked.items():
+        found[person].asked.append(Wait(max(0.0, replay.seconds - since), over=False))
+
+
+def _attend(replay: GameReplay, asked: dict[str, float]) -> dict[str, Attention]:
+    """Return the attention to each person in a game; update the open requests."""
     goes = goes_to_people(replay.activity)
     found = {person: Attention(person, could_visit=goes) for person in replay.game.people}
-    asked: dict[str, float] = {}
     sent = set[str]()  # whom Tangy visits unasked, until their request is closed
     requests = replay.requests
     before: Done | None = None
@@ -109,7 +171,7 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
         _count_visit(found, done, "" if before is None else before.after.place)
         if done.number in won and done.after.place in found:
             found[done.after.place].won += 1
-        waited = frozenset[str]() if before is None else requests[before.number]
+        waited = frozenset(asked) if before is None else requests[before.number]
         sent |= {who for step, who in replay.unasked if step == done.number and who not in waited}
         if before is not None:
             _count_between(replay, asked, done, waited | sent)
@@ -117,21 +179,29 @@ def attention_in(replay: GameReplay) -> dict[str, Attention]:
         _count_requests(found, asked, done, waiting - sent)
         sent &= waiting
     for person, since in asked.items():
-        found[person].open.append(max(0.0, replay.seconds - since))
-        found[person].spans.append((since, max(since, replay.seconds)))
-    for person in replay.game.away & found.keys():
-        if not (found[person].requests or found[person].visits):
-            del found[person]
+        found[person].spans.append((max(0.0, since), max(since, replay.seconds)))
     return found
 
 
-def attention(replays: Iterable[GameReplay]) -> dict[str, Attention]:
-    """Return the attention to each person, summed over games."""
+def attention(replays: Sequence[GameReplay]) -> dict[str, Attention]:
+    """Return the attention to each person, summed over the games of a session.
+
+    A request that did not go over into the next game is over if Tangy came to the person later.
+    """
     added: dict[str, Attention] = {}
-    for replay in replays:
-        for person, one in attention_in(replay).items():
-            added.setdefault(person, Attention(person, could_visit=False)).add(one)
+    for found in attention_by_game(replays):
+        for person, one in found.items():
+            whole = added.setdefault(person, Attention(person, could_visit=False))
+            if one.visits:
+                whole.asked = [wait._replace(over=True) for wait in whole.asked]
+            whole.add(one)
     return added
+
+
+def open_at_end(replays: Sequence[GameReplay]) -> dict[str, float]:
+    """Return how long (s) each person has waited who still waits when the last game has ended."""
+    found = attention_by_game(replays)[-1] if replays else {}
+    return {who: max(one.open) for who, one in found.items() if one.open}
 
 
 def wins(replay: GameReplay) -> set[int]:
@@ -183,8 +253,8 @@ def _count_requests(
         closed_at_once = done.after.closed == user.id and user.request == "AR"
         if user.id in asked and (not waits or closed_at_once):
             since = asked.pop(user.id)
-            found[user.id].waits.append(max(0.0, done.over - since))
-            found[user.id].spans.append((since, max(since, done.over)))
+            found[user.id].asked.append(Wait(max(0.0, done.over - since)))
+            found[user.id].spans.append((max(0.0, since), max(since, done.over)))
         if waits and user.id not in asked and not _is_with(done, user.id):
             asked[user.id] = done.over
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tangy_tui.monitoring.attention import attention_in, calls_in
+from tangy_tui.monitoring.attention import calls_in
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.house import RobotLog
 from tangy_tui.monitoring.played_for import wins_of
@@ -77,7 +77,7 @@ def _games(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
 
 def _people(log: RobotLog, replay: GameReplay) -> Iterator[dict[str, Any]]:
     answers = [answer for _, answer in replay.answers]
-    for person, one in attention_in(replay).items():
+    for person, one in log.attention[replay.game.id].items():
         own = [answer for answer in answers if answer.person == person]
         yield {
             "person": person,

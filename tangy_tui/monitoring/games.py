@@ -29,6 +29,8 @@ from tangy_tui.monitoring.fault import OPEN, Fault, read_faults
 SHORTEST = 4
 """Characters of an id that identify a game."""
 LAST, ALL = "last", "all"
+SESSION_GAP = 1800.0
+"""The longest time (s) between two games of a session."""
 
 
 @dataclass(frozen=True, slots=True)

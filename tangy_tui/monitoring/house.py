@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import cached_property
 from typing import Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.game_world import GameWorld
 from tangy_profiles.person import folded
 from tangy_profiles.store import Store
-from tangy_tui.monitoring.attention import Attention, attention_in
-from tangy_tui.monitoring.games import Game, read_games
+from tangy_tui.monitoring.attention import Attention, attention_by_game
+from tangy_tui.monitoring.games import SESSION_GAP, Game, read_games
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
 
 SHORT_ROBOT = 6
 """Characters of a robot's id that identify it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RobotLog:
     """The log of one robot, read for reports: its games, and people's names.
 
@@ -40,6 +41,12 @@ class RobotLog:
     def activity(self, game: Game) -> Activity | None:
         """Return the activity of a game, or None if it is unknown."""
         return self.activities.get(game.activity)
+
+    @cached_property
+    def attention(self) -> Mapping[str, Mapping[str, Attention]]:
+        """The attention to each person, by the game's and the person's ids."""
+        found = attention_by_game(self.replays)
+        return {replay.game.id: one for replay, one in zip(self.replays, found, strict=True)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +166,7 @@ def people_over_time(
     found: dict[tuple[str, str], PersonOverTime] = {}
     for log, replay in games:
         answers = [answer for _, answer in replay.answers]
-        for id, one in attention_in(replay).items():
+        for id, one in log.attention[replay.game.id].items():
             called = log.name(id)
             key = ("", folded(called)) if id in log.named else (log.robot, id)
             person = found.setdefault(key, PersonOverTime(called))
@@ -177,7 +184,7 @@ def by_month(games: Iterable[tuple[RobotLog, GameReplay]]) -> list[Month]:
     return [Month(year, month, tuple(found)) for (year, month), found in sorted(months.items())]
 
 
-def last_session(games: Sequence[Game], gap: float = 1800.0) -> list[Game]:
+def last_session(games: Sequence[Game], gap: float = SESSION_GAP) -> list[Game]:
     """Return the last game and the games before it that belong to the same session.
 
     They were played in the same world, with less than `gap` s between the end of one and the

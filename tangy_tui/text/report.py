@@ -15,9 +15,10 @@ from tangy_tui.monitoring.attention import (
     LEAST_WAIT,
     Attention,
     Call,
+    Wait,
     attention,
-    attention_in,
     calls_in,
+    open_at_end,
     visiting,
     waiting_at_calls_first,
 )
@@ -46,6 +47,9 @@ FAULTS_SHORT = "What went wrong"
 FAULT_COLUMNS = ("when", "what", "what came of it")
 NOT_REACHED = "not reached"
 ASKED_LAST = "asked as the game ended"
+WAITING = "Still waiting at the end"
+IN_VAIN = "Asked in an earlier game, and Tangy did not come"
+LONG = "Waited long for help"
 FEW_WAITS = 3
 """Up to so many waits are told one by one."""
 LONG_WAIT = 270.0
@@ -103,14 +107,16 @@ def waited_words(one: Attention) -> str:
     if not one.requests:
         return "\N{EN DASH}"
     if one.requests <= FEW_WAITS:  # "and" would make one time of two
-        return ", then ".join([*map(length, one.waits), *map(_open_words, one.open)])
+        return ", then ".join(map(_wait_words, one.asked))
     more = f"; {often(len(one.open))} {NOT_REACHED}" if one.open else ""
-    return usual_words([*one.waits, *one.open]) + more
+    return usual_words([wait.seconds for wait in one.asked]) + more
 
 
-def _open_words(wait: float) -> str:
-    """Tell how long a person waited in vain, unless they asked just before the game ended."""
-    return f"{length(wait)} ({NOT_REACHED})" if wait >= LEAST_WAIT else ASKED_LAST
+def _wait_words(wait: Wait) -> str:
+    """Tell how long a person waited, and whether in vain, unless the game ended just then."""
+    if wait.over:
+        return length(wait.seconds)
+    return f"{length(wait.seconds)} ({NOT_REACHED})" if wait.seconds >= LEAST_WAIT else ASKED_LAST
 
 
 def usual_words(waits: Sequence[float]) -> str:
@@ -199,7 +205,8 @@ def care_lines(
 ) -> list[str]:
     """Name the people who need attention: still waiting, after a long wait, or never visited.
 
-    People still wait only if they did at the end of the last game.
+    People still wait only if they did at the end of the last game. Requests of earlier games are
+    told apart if Tangy did not come to the person after them.
 
     Args:
         found: the attention to each person.
@@ -212,18 +219,32 @@ def care_lines(
         goes, stays = visiting(replays)
         where = f" in {listed(goes)} (in {listed(stays)} it goes to nobody)" if stays else ""
         lines.append(f"Tangy never went to {some_of(never)}{where}.")
-    waiting, waited = dict[str, list[str]](), dict[str, list[str]]()
-    at_end = attention_in(replays[-1]) if len(replays) > 1 else {one.id: one for one in people}
-    every = [(one, one.open_in(at_end), [*one.waits, *one.open]) for one in people]
-    for one, still, ended in sorted(every, key=lambda each: -max(each[1] or each[2], default=0.0)):
-        if still:
-            waiting.setdefault(length(max(still)), []).append(name(one.id))
-        elif ended and max(ended) > LONG_WAIT:
-            waited.setdefault(length(max(ended)), []).append(name(one.id))
-    for what, groups in (("Still waiting at the end", waiting), ("Waited long for help", waited)):
+    at_end = open_at_end(replays) if len(replays) > 1 else None
+    told = [(_care_of(one, at_end), name(one.id)) for one in people]
+    for what in (WAITING, IN_VAIN, LONG):
+        groups = dict[str, list[str]]()
+        for wait, who in sorted(
+            ((w, who) for (w, kind), who in told if kind == what), key=_longest
+        ):
+            groups.setdefault(length(wait), []).append(who)
         if groups:
             lines.append(f"{what}: {_waits_words(groups)}.")
     return lines
+
+
+def _longest(told: tuple[float, str]) -> float:
+    return -told[0]
+
+
+def _care_of(one: Attention, at_end: Mapping[str, float] | None) -> tuple[float, str]:
+    """Return a person's wait (s) that needs attention, and of which kind it is, "" if none."""
+    in_vain, longest = max(one.open, default=0.0), max(one.asked, default=Wait(0.0)).seconds
+    still = in_vain if at_end is None else at_end.get(one.id, 0.0)
+    if still >= LEAST_WAIT:
+        return still, WAITING
+    if in_vain >= LEAST_WAIT:
+        return in_vain, IN_VAIN
+    return longest, LONG if longest > LONG_WAIT else ""
 
 
 def some_of(names: Sequence[str]) -> str:

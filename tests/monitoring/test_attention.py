@@ -14,17 +14,26 @@ from typing import cast, get_args
 import pytest
 
 from tangy_profiles.game_records import GameChange, RecoveryEvent
+from tangy_profiles.game_world import LIVE, SIMULATED
 from tangy_profiles.staff_records import StaffActionKind
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
 from tangy_tui.app.game_commands import ComesIn, GoesAway
 from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.attention import Attention, attention, attention_in, calls_in
+from tangy_tui.monitoring.attention import (
+    Attention,
+    Wait,
+    attention,
+    attention_by_game,
+    attention_in,
+    calls_in,
+)
 from tangy_tui.monitoring.data_tables import HEAD, TABLES
 from tangy_tui.monitoring.fault import Fault, Moved
 from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.house import (
+    RobotLog,
     by_month,
     last_session,
     of_world,
@@ -33,13 +42,18 @@ from tangy_tui.monitoring.house import (
 )
 from tangy_tui.monitoring.replay import Done, GameReplay, Moment, Noted, Unclear
 from tangy_tui.pages.house import house_page, person_page
-from tangy_tui.text.report import attention_lines, care_lines
+from tangy_tui.text.report import attention_lines, care_lines, waited_words
 from tangy_tui.text.staff_actions import action_line, action_words, by_staff
 from tests.support.games import play
 
 DICTIONARY = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
 BEGUN = datetime(2026, 3, 1, 10, tzinfo=UTC)
 LENGTH = 10.0  # s of each step
+
+
+def asked(*over: float, left: float | None = None) -> list[Wait]:
+    """Make requests that are over, and one that is not."""
+    return [*map(Wait, over), *([] if left is None else [Wait(left, over=False)])]
 
 
 def state(place: str, asking: Sequence[str] = (), closed: str | None = None) -> ActivityState:
@@ -162,8 +176,8 @@ def test_a_claim_by_staff_is_no_request_even_if_the_first_drive_fails() -> None:
 
 
 def test_the_summary_lists_waits_longest_first() -> None:
-    ann = Attention("Ann", waits=[20.0, 400.0], visits=2, seconds=30.0, won=1)
-    bob, cy = Attention("Bob", open=[60.0]), Attention("Cy", waits=[30.0], open=[120.0], visits=1)
+    ann = Attention("Ann", asked(20.0, 400.0), visits=2, seconds=30.0, won=1)
+    bob, cy = Attention("Bob", asked(left=60.0)), Attention("Cy", asked(30.0, left=120.0), visits=1)
     assert attention_lines([ann, bob, cy], str) == [
         "Asked for help:",
         "  Ann twice, waited: 20 s, then 7 min; 2 visits, 30 s in all",
@@ -187,19 +201,70 @@ def test_only_who_waits_at_the_end_of_the_session_is_told_as_still_waiting() -> 
         return [line for line in care_lines(found, str, replays) if "never" not in line]
 
     assert told(fine, waits) == ["Still waiting at the end: ann, 20 s."]
-    assert told(waits, fine) == []
+    vain = "Asked in an earlier game, and Tangy did not come: ann"
+    assert told(waits, fine) == told(waits, fine, fine) == [f"{vain}, 20 s."]
     long = replace(waits, seconds=500.0)
-    assert told(long, fine) == ["Waited long for help: ann, 8 min."]
+    assert told(long, fine) == [f"{vain}, 8 min."]
+    came = replay_of(state(FRONT), state(FRONT), state("ann", ["ann"]))
+    assert told(waits, came) == []
+    assert told(long, came, fine) == ["Waited long for help: ann, 8 min."]
+
+
+def live(replay: GameReplay, begins: float) -> GameReplay:
+    """Return a game of real people that begins some s after 10:00."""
+    at = BEGUN + timedelta(seconds=begins)
+    ended = at + timedelta(seconds=replay.seconds)
+    return replace(replay, game=game(id=f"g{begins:g}", at=at, ended=ended, world=LIVE))
+
+
+ASKS, REST = state(FRONT, ["ann"]), state(FRONT)
+
+
+def test_a_request_that_goes_over_into_the_next_game_is_one_wait() -> None:
+    first = live(replay_of(REST, ASKS, ASKS, ASKS), 0.0)  # since 10 s
+    second = live(replay_of(REST, ASKS, ASKS), 60.0)
+    third = live(replay_of(ASKS, ASKS, state("ann", ["ann"]), REST, ASKS, ASKS), 100.0)
+    assert attention([first, second])["ann"].asked == asked(left=70.0)
+    came = attention([first, second, third])["ann"]
+    assert came.asked == asked(110.0, left=10.0)
+    assert waited_words(came) == "2 min, then 10 s (not reached)"
+    told = care_lines([came], str, [first, second, third])
+    assert told == ["Still waiting at the end: ann, 10 s."]
+    each = [found["ann"] for found in attention_by_game([first, second, third])]
+    assert [one.requests for one in each] == [0, 0, 2]
+    assert [one.spans for one in each] == [
+        [(10.0, 30.0)],
+        [(0.0, 20.0)],
+        [(0.0, 20.0), (40.0, 50.0)],
+    ]
+    log = RobotLog("r", "r", (first, second, third), {}, frozenset(), {})
+    (table,) = (one for one in TABLES if one.name == "people")
+    rows = [row for row in table.of([log]) if row["person"] == "ann"]
+    assert [(row["requests"], row["waits"], row["open_waits"]) for row in rows] == [
+        (0, "", ""), (0, "", ""), (2, "110.0", "10.0"),
+    ]  # fmt: skip
+    (ann,) = (one for one in people_over_time(of_world([log], LIVE)) if one.name == "ann")
+    assert ann.sum.asked == came.asked
+
+
+def test_a_request_goes_over_only_if_the_person_still_asks_soon_after_it() -> None:
+    first = live(replay_of(REST, ASKS, ASKS), 0.0)
+    lowered = live(replay_of(REST, REST, ASKS, ASKS), 60.0)
+    assert attention([first, lowered])["ann"].asked == [Wait(10.0, over=False)] * 2
+    later = live(replay_of(REST, ASKS, ASKS), 7200.0)
+    assert attention([first, later])["ann"].asked == [Wait(10.0, over=False)] * 2
+    apart = [replace(one, game=replace(one.game, world=SIMULATED)) for one in (first, lowered)]
+    assert attention(apart)["ann"].requests == 2
 
 
 def test_waits_that_are_told_alike_are_looked_after_alike() -> None:
-    emil, hugo = (Attention(who, waits=[wait], visits=1) for who, wait in (("E", 301), ("H", 271)))
-    ida = Attention("I", waits=[269.0], visits=1)
+    emil, hugo = (Attention(who, asked(wait), visits=1) for who, wait in (("E", 301), ("H", 271)))
+    ida = Attention("I", asked(269.0), visits=1)
     assert care_lines([emil, hugo, ida], str) == ["Waited long for help: E and H, 5 min."]
 
 
 def test_who_asks_as_the_game_ends_is_not_told_as_waiting() -> None:
-    ann = Attention("Ann", waits=[30.0], open=[0.2], visits=1, seconds=5.0)
+    ann = Attention("Ann", asked(30.0, left=0.2), visits=1, seconds=5.0)
     assert care_lines([ann], str) == []
     told = attention_lines([ann], str)[-1]
     assert told.endswith("waited: 30 s, then asked as the game ended; 1 visit, 5 s in all")
@@ -207,7 +272,7 @@ def test_who_asks_as_the_game_ends_is_not_told_as_waiting() -> None:
 
 def test_what_to_look_after_names_a_few_of_many_people_and_counts_the_others() -> None:
     never = [Attention(f"N{n}") for n in range(19)]
-    waiting = [Attention(f"W{n}", open=[600.0 - 60 * (n // 2)], visits=1) for n in range(9)]
+    waiting = [Attention(f"W{n}", asked(left=600.0 - 60 * (n // 2)), visits=1) for n in range(9)]
     first, second = care_lines([*never, *waiting], str)
     assert first == "Tangy never went to N0, N1, N2, N3, N4 and 14 others."
     assert second == (
@@ -288,8 +353,8 @@ def test_names_replace_ids_next_to_any_punctuation() -> None:
 
 
 def test_attention_of_several_games_adds_up() -> None:
-    one = Attention("ann", waits=[1.0], visits=1, seconds=2.0, last_visit=3.0)
-    one.add(Attention("ann", open=[9.0], visits=2, seconds=3.0, won=1))
+    one = Attention("ann", asked(1.0), visits=1, seconds=2.0, last_visit=3.0)
+    one.add(Attention("ann", asked(left=9.0), visits=2, seconds=3.0, won=1))
     assert (one.requests, one.open, one.visits, one.seconds) == (2, [9.0], 3, 5.0)
     assert (one.won, one.last_visit) == (1, 3.0)
 

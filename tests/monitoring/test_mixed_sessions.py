@@ -13,7 +13,7 @@ from tangy_profiles.beliefs import Beta
 from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.memory import PersonModels
-from tangy_tui.monitoring.attention import Attention, visiting
+from tangy_tui.monitoring.attention import Attention, Wait, visiting
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.people_progress import people_progress
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
@@ -91,7 +91,7 @@ def test_the_report_names_the_activities_in_which_tangy_goes_to_people(
     mixed = [replays[0], quiz]
     assert visiting(mixed) == (("Bingo",), ("Trivia",))
     assert visiting_words(replays) == ""
-    ann = Attention("Ann", waits=[3.0])
+    ann = Attention("Ann", [Wait(3.0)])
     (alone,) = care_lines([ann], str, replays)
     (told,) = care_lines([ann], str, mixed)
     assert "Trivia" not in alone
@@ -132,7 +132,7 @@ def test_a_late_response_is_not_told_as_done_in_time() -> None:
     ],
 )
 def test_every_wait_that_is_told_is_one_of_the_log(waits: list[float], words: str) -> None:
-    assert waited_words(Attention("ann", waits=waits)) == words
+    assert waited_words(Attention("ann", list(map(Wait, waits)))) == words
 
 
 def test_what_works_is_told_only_where_tangy_asks_people_for_something() -> None:
