@@ -31,6 +31,9 @@ PERFORMS: dict[str, Perform] = {
 }
 """Commands that run an action, besides the word of every action of the keymap."""
 
+NEXT_GAME = ("next game", "another game", "play again", "play another game", "new game")
+"""Words for the next game while one is played; in teaching they begin another demonstration."""
+
 PERFORMED = frozenset(
     {
         *("palette", "draw", "talk", "listen", "zoom", "picture", "mouse", "voice"),
@@ -57,6 +60,8 @@ def read_screen(text: str) -> Perform | None:
         return Perform("whose_card")
     if words in WHO_IS_HERE:
         return Perform("presence")
+    if words in NEXT_GAME:
+        return Perform("next")
     word = read_program(text)
     if isinstance(word, str):
         return Perform(word) if word in ("why", "help", "phrases") else None

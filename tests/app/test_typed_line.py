@@ -10,7 +10,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.app.command_grammar import command_reader
 from tangy_tui.app.game_commands import ComesIn, GoesAway
 from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS
-from tangy_tui.app.screen_grammar import Perform
+from tangy_tui.app.screen_grammar import NEXT_GAME, Perform
 from tangy_tui.app.typed_line import Several, Typed, read_typed
 from tangy_tui.app.workspace import Workspace
 
@@ -81,9 +81,13 @@ def test_an_unknown_name_is_refused_without_a_list_of_everybody(data_folder: Pat
 
 @pytest.mark.parametrize(
     ("words", "action"),
-    [*((one, "whose_card") for one in WHOSE_CARDS), *((one, "presence") for one in WHO_IS_HERE)],
+    [
+        *((one, "whose_card") for one in WHOSE_CARDS),
+        *((one, "presence") for one in WHO_IS_HERE),
+        *((one, "next") for one in NEXT_GAME),
+    ],
 )
-def test_questions_about_cards_and_people_open_what_their_keys_open(
+def test_words_about_cards_people_and_games_do_what_their_keys_do(
     workspace: Workspace, words: str, action: str
 ) -> None:
     assert typed(workspace, words) == typed(workspace, f"{words.title()}?") == Perform(action)

@@ -138,7 +138,7 @@ class PlayScreen(PlayStaff):
         self._voice.hush()
         self._do(GoOn())
 
-    def action_again(self) -> None:
+    def action_next(self) -> None:
         """Play one more game, now or after this one, after confirmation."""
         if not self._refused():
             self._sure(text.ANOTHER, self._another_detail(), self._another)

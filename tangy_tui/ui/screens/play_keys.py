@@ -59,7 +59,7 @@ BINDINGS: list[BindingType] = [
     *bind("faster", "speed(1)"),
     *bind("slower", "speed(-1)"),
     *bind("skip"),
-    *bind("next", "again"),
+    *bind("next"),
     *bind("why"),
     *bind("inside"),
     *bind("claim"),
