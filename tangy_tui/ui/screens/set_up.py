@@ -35,7 +35,7 @@ from tangy_tui.ui.keys import bind, keymap_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import WIDE, KeyLine, panel
 from tangy_tui.ui.screens.set_up_lines import check_lines, game_lines, people_lines
-from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.room_view import EMPTY, RoomView
 from tangy_tui.ui.widgets.set_up_list import SetUpList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -134,20 +134,18 @@ class SetUpScreen(TangyScreen[bool]):
         self.query_one(SetUpList).border_title = title
 
     def _draw_seats(self) -> None:
-        """Draw the people at their seats, beside the lines if there is room."""
-        workspace, away = self.setup.workspace, self.setup.away
+        """Draw the seats, also those of people who are away, beside the lines if there is room."""
+        workspace, away = self.setup.workspace, frozenset(self.setup.away)
         name = staff_names(workspace.name)
-        here = [replace(one, name=name(one.id)) for one in workspace.people if one.id not in away]
-        if self._drawn != (here, workspace.room):
-            self._drawn = here, workspace.room
+        people = [replace(one, name=name(one.id)) for one in workspace.people]
+        if self._drawn != (people, away, workspace.room):
+            self._drawn = people, away, workspace.room
             seats = self.query_one("#seats", Vertical)
             seats.remove_children()
-            if here:
-                seats.mount(
-                    panel(
-                        RoomView(workspace.room, here, cards=self.setup.calls, id=None), text.SEATS
-                    )
-                )
+            if len(away) < len(people):
+                room = RoomView(workspace.room, people, cards=self.setup.calls, id=None)
+                room.show(replace(EMPTY, away=away))
+                seats.mount(panel(room, text.SEATS))
 
     # ------------------------------------------------------------------------------- the lines
 
