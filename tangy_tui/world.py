@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from tangy_profiles.activity import Activity
@@ -101,10 +102,23 @@ class Queueing(Protocol):
         """Who asks for help, in the order in which they are served."""
         ...
 
+    @property
+    def asked_at(self) -> Mapping[str, float]:
+        """When each of them asked, in s of the world's time."""
+        ...
+
 
 def queue_of(world: World) -> tuple[str, ...] | None:
     """Return who asks for help, to be logged; None if the steps are enough."""
     return world.queue if isinstance(world, Queueing) else None
+
+
+def since_when(world: World, asking: Sequence[str] | None, began: float) -> tuple[float, ...]:
+    """Return when each of these people asked, in s since a game began at a time of the world."""
+    if not asking or not isinstance(world, Queueing):
+        return ()
+    asked = world.asked_at
+    return tuple(round(asked.get(person, world.seconds) - began, 3) for person in asking)
 
 
 def remembered(world: World) -> GameMemory | None:

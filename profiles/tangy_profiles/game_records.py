@@ -148,8 +148,9 @@ class GameStep(EventRecord):
 
     `seconds` is its duration, and `clock` the time played when it ended, including pauses between
     steps; old logs lack them. `asking` is who asks for help in a live game, in the order of the
-    queue, also while `after` shows no requests because numbers are called first. `memory` holds
-    the facts of a live game of an activity by facts, which the steps alone do not determine.
+    queue, also while `after` shows no requests because numbers are called first, and `since` when
+    each of them asked, by the `clock`; below 0: before the game. `memory` holds the facts of a live
+    game of an activity by facts, which the steps alone do not determine.
     """
 
     game: str
@@ -166,6 +167,7 @@ class GameStep(EventRecord):
     state: GameState
     after: GameState | None = None
     asking: Sparse[tuple[str, ...] | None] = None
+    since: Sparse[tuple[float, ...] | None] = None
     memory: Sparse[GameMemory | None] = None
 
     def invalid_reason(self) -> str:

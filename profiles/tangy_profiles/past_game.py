@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from math import inf
 from typing import Protocol
 
 from tangy_profiles.activity import Activity
@@ -185,14 +186,22 @@ class PastGame:
         requests, since, over = OpenRequests(), dict[str, float](), 0.0
         calls = calling(activity.behaviours)
         for number, (step, over) in enumerate(zip(self.steps, self.clock, strict=True)):
+            before = self.clock[number - 1] if number else -inf
             self._change(requests.change, self.beginning.game, number)
             called = step.behaviour in calls and step.completed
             requests.step(step.state, step.after or step.state, called=called)
             seen = {user.id for user in step.state.users if user.request == "AR"}
             begun = over - (step.seconds or 0.0)
             people = requests.people if step.asking is None else step.asking
-            since = {p: since.get(p, begun if p in seen else over) for p in people}
+            told = dict(zip(step.asking or (), step.since or (), strict=False))
+            first = {p: begun if p in seen else over for p in people}
+            first |= {p: max(before, at) for p, at in told.items() if p in first}
+            since = {p: since.get(p, first[p]) for p in people}
         return since
+
+    def waits(self, activity: Activity) -> dict[str, float]:
+        """Return how long each person had waited for the robot in the time played, in s."""
+        return {person: self.seconds - at for person, at in self.asked(activity).items()}
 
     def replay(self, world: ReplayedWorld) -> ActivityState:
         """Replay the logged games of the run; return the last state.

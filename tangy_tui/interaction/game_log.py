@@ -12,7 +12,7 @@ from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import Acted
-from tangy_tui.world import World, queue_of, remembered
+from tangy_tui.world import World, queue_of, remembered, since_when
 
 
 class GameLog:
@@ -72,6 +72,7 @@ class GameLog:
     def step(self, game: str, acted: Acted, teacher: str) -> None:
         """Log a step, and the person's response or that it is awaited."""
         action, outcome, choice = acted.action, acted.outcome, acted.choice
+        asking = queue_of(self._world)
         self._store.append(
             GameStep(
                 game=game,
@@ -87,7 +88,8 @@ class GameLog:
                 clock=self.seconds,
                 state=acted.state,
                 after=acted.after,
-                asking=queue_of(self._world),
+                asking=asking,
+                since=since_when(self._world, asking, self._began) or None,
                 memory=remembered(self._world),
             )
         )

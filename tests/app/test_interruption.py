@@ -21,7 +21,15 @@ from tangy_profiles.past_game import NotResumable, PastGame, interrupted_game
 from tangy_profiles.room import load_room
 from tangy_profiles.state import ActivityState
 from tangy_profiles.tracker import Tracker
-from tangy_tui.app.game_commands import AskFor, GoesAway, GoOn, HasCard, StopRobot, TakeBackCall
+from tangy_tui.app.game_commands import (
+    AskFor,
+    EndGame,
+    GoesAway,
+    GoOn,
+    HasCard,
+    StopRobot,
+    TakeBackCall,
+)
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.interruption import can_join, end_interrupted, find_interrupted, take_up
 from tangy_tui.app.joining import let_join
@@ -378,6 +386,33 @@ def test_a_request_by_staff_stays_open_after_a_resume(taught: Path) -> None:
         after.link.time += 60.0
         after.control.next()
     assert after.world.scene().requests == ("user3",)
+    workspace.close()
+
+
+def test_a_wait_is_kept_from_when_the_person_asked_and_across_games(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    before.next(3)
+    for person in ("user3", "user1"):  # Tangy goes to the first one
+        before.control.apply(AskFor(person))
+    before.link.time += 30.0  # in the middle of a step, as it were
+    before.next(1)
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    assert past.asked(workspace.activity)["user1"] == pytest.approx(past.clock[2])
+    waits = past.waits(workspace.activity)["user1"]
+    assert waits >= 30.0
+    after = Robot(workspace, past)
+    assert after.link.time - after.world.asked_at["user1"] == pytest.approx(waits)
+    after.link.time += 300.0
+    after.control.apply(EndGame())
+    after.control.begin()
+    after.next(2)
+    again = interrupted_game(workspace.store, workspace.activity.name)
+    assert again is not None and again.waits(workspace.activity)["user1"] >= waits + 300.0
+    last = Robot(workspace, again)
+    (told,) = [one.waits for one in last.control.view().people if one.id == "user1"]
+    assert told is not None and told >= waits + 300.0
     workspace.close()
 
 

@@ -108,9 +108,8 @@ class DeclaredLiveWorld(LiveWorld):
         for change in past.since_step:
             self.change(change)
         self._started = self.link.time - game.now
-        for person in (*game.queue, *past.asked_for):
-            if person not in self.away:
-                self.requests.ask_for(person)
+        waits, asked = past.waits(self.activity), (*game.queue, *past.asked_for)
+        self.requests.resume({p: waits.get(p, 0.0) for p in asked if p not in self.away})
         self.over = False
         self.commands.settle()
         self.commands.await_tablets()

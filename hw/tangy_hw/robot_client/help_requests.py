@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from typing import Literal
 
@@ -108,13 +108,16 @@ class HelpRequestTracker:
         """End a person's request by word."""
         self._by_word.pop(person, None)
 
-    def resume(self, asking: Collection[str]) -> None:
+    def resume(self, waits: Mapping[str, float]) -> None:
         """Take the open requests of an interrupted game as requests by word.
 
         Their signs may not be seen again: staff may have asked for them.
+
+        Args:
+            waits: how long (s) each person has waited in the game.
         """
         now = self._link.time
-        self._by_word = {one: self._by_word.get(one, now) for one in asking}
+        self._by_word = {one: self._by_word.get(one, now - wait) for one, wait in waits.items()}
 
     def set_aside(self, person: str) -> None:
         """Close a person's request, even while the sign stays up."""

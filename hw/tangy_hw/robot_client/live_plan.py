@@ -147,6 +147,11 @@ class LivePlan(PlannedGame):
         return *queue, *new
 
     @property
+    def asked_at(self) -> Mapping[str, float]:
+        """When each person asked who asks by a sign or by word, in s of the robot's time."""
+        return self.requests.all
+
+    @property
     def asking(self) -> tuple[str, ...]:
         """The queue, and behind it people whose signs the game takes in after its present step."""
         queue = self.queue

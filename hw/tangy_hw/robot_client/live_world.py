@@ -126,7 +126,8 @@ class LiveWorld(LivePlan):
             self._begin()  # each game of the run has its own order
         past.follow(self.tracker, self.change)
         asked = (*self.tracker.queue, *past.asked_for)  # these after the last step
-        self.requests.resume([one for one in asked if one not in self.away])
+        waits = past.waits(self.activity)
+        self.requests.resume({p: waits.get(p, 0.0) for p in asked if p not in self.away})
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
