@@ -29,6 +29,19 @@ class DueChange:
     number: int = 0
 
 
+@dataclass(frozen=True, slots=True)
+class Won:
+    """A win in the running game."""
+
+    person: str
+    pattern: str
+    """Its label, "" if it has none."""
+    calls: int = 0
+    """How many numbers had been called; 0: unknown, as the game was interrupted since."""
+    number: int = 0
+    """The last of these numbers."""
+
+
 class PlannedGame:
     """A world's game with staff's plan; call `choose` before it begins."""
 
@@ -44,8 +57,8 @@ class PlannedGame:
     patterns: Patterns
     winner = ""
     """The winner, while others are visited before the game continues or ends."""
-    _winners: tuple[str, ...] = ()
-    """Who has won in this game, in order, up to the last win that the game went on after."""
+    _past_wins: tuple[Won, ...] = ()
+    """The wins of this game, in order, up to the last one that the game went on after."""
     _asked_before: frozenset[str] | None = None
     """Who asked when somebody won, and has not been visited since; None: nobody has won yet."""
     vouched: frozenset[str] = frozenset()
@@ -80,7 +93,7 @@ class PlannedGame:
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
         self.winner, self.visiting, self.all_called = "", "", False
         self.looking = self.said = ""
-        self._winners = ()
+        self._past_wins = ()
         self._asked_before = None
         self.vouched, self.away = frozenset(), frozenset(self.game_plan.absent)
         self._visited, self._row_began = {}, 0.0
@@ -131,10 +144,25 @@ class PlannedGame:
     @property
     def has_won(self) -> tuple[str, ...]:
         """Who has won in this game, in order."""
-        if not self.tracker.finished:
-            return self._winners
-        won = (*self._winners, self._finisher)
-        return tuple(one for one in dict.fromkeys(won) if one in self.people)
+        return tuple(dict.fromkeys(one.person for one in self.all_wins))
+
+    @property
+    def all_wins(self) -> tuple[Won, ...]:
+        """The wins of this game, in order."""
+        return self._with_win(self._finisher) if self.tracker.finished else self._past_wins
+
+    def _with_win(self, person: str) -> tuple[Won, ...]:
+        """Return all wins, with one by the present pattern that a person may have made."""
+        rules, present = self.activity.rules, self.patterns.present
+        usual = next(
+            (one for one in rules.patterns if one.on(self.own_deck) == self.own_deck), None
+        )
+        pattern = present or usual
+        label, called = pattern.label if pattern else "", self.called_now
+        known = any((one.person, one.pattern) == (person, label) for one in self._past_wins)
+        if known or person not in self.people:
+            return self._past_wins
+        return (*self._past_wins, Won(person, label, len(called), called[-1] if called else 0))
 
     @property
     def _finisher(self) -> str:
@@ -257,7 +285,7 @@ class PlannedGame:
         """Apply a change."""
         person = change.person
         if change.what in ("others first", "played on") and person:
-            self._winners = tuple(dict.fromkeys((*self._winners, person)))
+            self._past_wins = self._with_win(person)
         match change.what:
             case "patterns chosen":
                 self.patterns.follow_with(change.patterns)

@@ -49,6 +49,17 @@ _WHO_WAITS = re.compile(
 )
 """Questions about everybody who waits, in the order of the visits."""
 
+_ANYBODY = r"(?:anybody|anyone|somebody|someone|people|they)"
+_A_WIN = r"(?:won|wins?|winning)"
+_WHO_WON = re.compile(
+    rf"(?:and )?who(?:'s| is| was| are| were| has| have| else| all| already)*"
+    rf" (?:{_A_WIN}|(?:the |our )?winners?)(?: (?:now|yet|so far|already|the|this|game|it|then))*"
+    rf"|(?:has|have|did|does) {_ANYBODY}(?: else| already)* {_A_WIN}"
+    r"(?: (?:yet|so far|already|now))*"
+    r"|(?:is|was|are|were) there (?:a|any) winners?(?: (?:yet|so far|already|now))*"
+)
+"""Questions about everybody who has won in the game."""
+
 _TANGY = r"(?:you|it|tangy|the robot|he|she)"
 _WHY = re.compile(
     r"why(?: (?:that|this|now|not|so|not now|not yet))?"
@@ -97,6 +108,12 @@ def asks_who_waits(text: str) -> bool:
     return _WHO_WAITS.fullmatch(words.strip(" ?.!,")) is not None
 
 
+def asks_who_won(text: str) -> bool:
+    """Return whether words ask who has won."""
+    words = " ".join(text.replace("\u2019", "'").split()).casefold()
+    return _WHO_WON.fullmatch(words.strip(" ?.!,")) is not None
+
+
 @dataclass(frozen=True, slots=True)
 class AsksAbout:
     """A question about people, by id: why Tangy goes to them or not, and when their turn is."""
@@ -114,7 +131,12 @@ class AsksWhoWaits:
     """A question about everybody who waits for a visit, in the order of the visits."""
 
 
-Question: TypeAlias = AsksAbout | AsksHowLong | AsksWhoWaits
+@dataclass(frozen=True, slots=True)
+class AsksWhoWon:
+    """A question about everybody who has won in the game."""
+
+
+Question: TypeAlias = AsksAbout | AsksHowLong | AsksWhoWaits | AsksWhoWon
 
 _SHORT = {
     "n't": " not",

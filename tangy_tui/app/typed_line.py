@@ -10,8 +10,10 @@ from tangy_tui.app.game_commands import GameCommand
 from tangy_tui.app.inquiry_grammar import (
     AsksHowLong,
     AsksWhoWaits,
+    AsksWhoWon,
     Question,
     asks_who_waits,
+    asks_who_won,
     read_question,
 )
 from tangy_tui.app.plan_grammar import lines_of
@@ -61,5 +63,7 @@ def read_typed(
         return AsksHowLong()
     if asks_who_waits(typed):
         return AsksWhoWaits()
+    if asks_who_won(typed):
+        return AsksWhoWon()
     word = read_question(typed, find_person) or read_screen(typed)
     return None if isinstance(word, Perform) and not can(word.action) else word

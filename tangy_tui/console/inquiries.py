@@ -15,6 +15,7 @@ from tangy_tui.app.inquiry_grammar import (
     WHO_IS_HERE,
     WHOSE_CARDS,
     asks_who_waits,
+    asks_who_won,
     read_inquiry,
     read_question,
 )
@@ -50,6 +51,7 @@ from tangy_tui.text.whose_turn import (
     waiting_lines,
     why_now_lines,
 )
+from tangy_tui.text.winners import won_lines
 
 
 class Inquiries:
@@ -85,6 +87,8 @@ class Inquiries:
             return time_lines(self._controller)
         if asks_who_waits(text):
             return waiting_lines(game_moment(self._controller), self._name)
+        if asks_who_won(text):
+            return won_lines(self._controller, self._name)
         try:
             about = read_question(text, self._find_person)
         except TangyError as error:

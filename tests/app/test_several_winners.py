@@ -11,7 +11,9 @@ from tangy_profiles.cards import winning_state
 from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.game_commands import ChoosePatterns, EndGame
 from tangy_tui.app.game_view import view_of
+from tangy_tui.app.inquiry_grammar import AsksWhoWon, asks_who_won
 from tangy_tui.app.scripted_staff import go_on_by_script
+from tangy_tui.app.typed_line import read_typed
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.text.staff_view import (
     HAS_WON,
@@ -21,9 +23,10 @@ from tangy_tui.text.staff_view import (
     played_facts,
     played_words,
     winners_facts,
+    won_words,
 )
 from tangy_tui.text.watching import now_lines
-from tangy_tui.ui.screens.play_view import ViewSource, show_view
+from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tests.app.test_planned_games import Planned
@@ -98,3 +101,44 @@ def test_nobody_has_won_when_another_game_begins(planned: Planned) -> None:
     planned.control.apply(EndGame())
     planned.begin(GamePlan())
     assert planned.world.has_won == ()
+
+
+ASKED = (
+    *("who has won", "who won?", "Who's won so far", "who is the winner", "who are the winners"),
+    *("has anybody won", "has anyone won yet?", "did somebody win", "is there a winner"),
+)
+
+
+@pytest.mark.parametrize("words", ASKED)
+def test_questions_about_who_has_won_are_understood(words: str) -> None:
+    assert asks_who_won(words)
+    assert read_typed(words, lambda line: None, str, lambda action: True) == AsksWhoWon()
+
+
+@pytest.mark.parametrize("words", ["who waits", "several winners", "who is next", "who has a line"])
+def test_other_words_do_not_ask_who_has_won(words: str) -> None:
+    assert not asks_who_won(words)
+
+
+def test_the_winners_are_told_with_pattern_card_and_call(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    lines = Inquiries(planned.control, NAMES.__getitem__, None, str).lines
+    assert lines("has anybody won") == ["Nobody has won yet."]
+    first = won_first(planned)
+    world = planned.world
+    label = world.activity.deck.label(world.called_now[-1])
+    at = f"card {world.known_cards[first]}, call {len(world.called_now)} ({label})"
+    assert lines("who has won") == [f"{NAMES[first]} has won with a line: {at}."]
+    planned.play()
+    told = lines("who won") or []
+    assert told[0] == "The game is over." and " has won with two lines: " in told[-1]
+    won = [NAMES[one] for one in world.has_won]
+    source = ViewSource(world, planned.control, NAMES.__getitem__)
+    assert next_line(source) == f"The game is over. {won_words(won)}"
+
+
+def test_nobody_has_won_a_game_that_staff_ended(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.control.apply(EndGame())
+    lines = Inquiries(planned.control, NAMES.__getitem__, None, str).lines
+    assert lines("who won") == ["The game is over.", "Nobody has won."]

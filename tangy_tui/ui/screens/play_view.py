@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.game_world import SIMULATED
-from tangy_profiles.planned_game import as_planned
+from tangy_profiles.planned_game import PlannedGame, as_planned
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.game_moment import plays_on
 from tangy_tui.app.readiness import battery_of
@@ -73,7 +73,8 @@ def next_line(shown: ViewSource) -> str:
         said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
         if not control.supervision.games:
             return text.PAUSED if control.past is not None else ""
-        return " ".join(filter(None, (text.OVER, shown.report, said)))
+        won = "" if (game := as_planned(world)) is None else _won_words(game, shown.name)
+        return " ".join(filter(None, (text.OVER, won, shown.report, said)))
     if control.stopped:
         return f"{stopped_words(control.stopped_by)}."
     if control.phase == "asking":
@@ -109,6 +110,10 @@ def next_line(shown: ViewSource) -> str:
     if control.going:
         return words
     return f"{text.PAUSES_THEN if control.stepping else text.PAUSED} {words}".strip()
+
+
+def _won_words(game: PlannedGame, name: Callable[[str], str]) -> str:
+    return text.won_words([name(one) for one in game.has_won])
 
 
 def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[Fact]:
