@@ -328,7 +328,7 @@ class StaffLines:
         if isinstance(command, EndGame):
             self._controller.break_off()
         self._controller.plan.say_early(command)
-        self._tasks.put(lambda: self._telling.in_turn(command))
+        self._tasks.put(self._telling.queue(command))
 
     def _take(self, text: str) -> None:
         if not text or text.startswith("#"):

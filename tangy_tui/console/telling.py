@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
+from tangy_tui.app.claim_controls import ClaimNow
 from tangy_tui.app.game_commands import ClaimCard, GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.app.staff_notes import StaffNote
@@ -99,28 +100,46 @@ class GameTelling:
                 self.tell_lines(lines)
         self.tell_lines(filter(None, self._also(events)))
 
-    def in_turn(self, command: GameCommand) -> Sequence[ControllerOutput]:
-        """Carry out a command once the robot has done its present step; tell if that takes long.
+    def queue(self, command: GameCommand) -> Callable[[], Sequence[ControllerOutput]]:
+        """Answer a command that has to wait for its turn; return what carries it out then.
 
-        The result of a claim is told at once: the robot needs a while to tell the group.
+        The result of a claim is told at once: the robot needs a while to tell the group. Of other
+        commands, staff are told if they wait for long, also behind earlier ones.
         """
         controller = self._controller
-        if controller.robot.there:
-            if judged := self._judged(command):
-                self.write(judged)
-            elif not controller.wait_for_turn(SOON_SECONDS):
-                self.write(waits_words(command, self._name))
-        return controller.apply(command)
+        judged = self._judged(command) if controller.robot.there else None
+        if judged is not None:
+            self.tell_lines([claimed_words(judged, self._name, controller.plan.calling)])
+        begun, done = threading.Event(), threading.Event()
 
-    def _judged(self, command: GameCommand) -> str:
-        """Return the result of a claim by the numbers called so far, "" if it is none."""
+        def tell_that_it_waits() -> None:
+            if not done.is_set() and (controller.stepping or not begun.is_set()):
+                self.write(waits_words(command, self._name))
+
+        soon = threading.Timer(SOON_SECONDS, tell_that_it_waits)
+        soon.daemon = True
+        if judged is None and controller.robot.there:
+            soon.start()
+
+        def in_turn() -> Sequence[ControllerOutput]:
+            begun.set()
+            try:
+                return _not_told(controller.apply(command), judged)
+            finally:
+                done.set()
+                soon.cancel()
+
+        return in_turn
+
+    def _judged(self, command: GameCommand) -> ClaimNow | None:
+        """Return a claim with its result by the numbers called so far, None if it is none."""
         plan = self._controller.plan
         claimed = plan.judged(command) if isinstance(command, ClaimCard) else None
         if claimed is None:
-            return ""
+            return None
         if claimed.kind is not None and not self._controller.stepping:
             claimed = replace(claimed, told=0.0)  # nothing comes before it
-        return claimed_words(claimed, self._name, plan.calling)
+        return claimed
 
     def write(self, line: str) -> None:
         """Write a line."""
@@ -131,3 +150,18 @@ class GameTelling:
         """Write lines."""
         for line in lines:
             self.write(line)
+
+
+def _not_told(
+    results: Iterable[ControllerOutput], judged: ClaimNow | None
+) -> Sequence[ControllerOutput]:
+    """Leave out of the results of a claim what staff were told when they made it."""
+    told = list[ControllerOutput]()
+    for one in results:
+        if judged is None or not isinstance(one, StaffNote) or one.kind != judged.kind:
+            told.append(one)
+        elif one.words:
+            told.append(StaffNote("claims told", words=one.words))
+        elif not judged.later:
+            told.append(one)
+    return told

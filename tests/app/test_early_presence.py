@@ -86,7 +86,7 @@ def test_lines_tell_at_once_that_a_command_waits_for_the_step(robot: Robot) -> N
 
     def meanwhile(do: str, time: float) -> None:
         robot.link.meanwhile = lambda do, time: None
-        threads.append(Thread(target=lambda: telling.tell(telling.in_turn(command))))
+        threads.append(Thread(target=lambda: telling.tell(telling.queue(command)())))
         threads[-1].start()
         wait_until(lambda: told == [waits_words(command, str)])
         assert changed(robot) == []
@@ -106,16 +106,50 @@ def test_lines_tell_the_result_of_a_claim_before_the_step_is_over(robot: Robot) 
 
     def meanwhile(do: str, time: float) -> None:
         robot.link.meanwhile = lambda do, time: None
-        threads.append(Thread(target=lambda: telling.tell(telling.in_turn(command))))
+        threads.append(Thread(target=lambda: telling.tell(telling.queue(command)())))
         threads[-1].start()
         wait_until(lambda: told == [at_once])
 
     robot.link.meanwhile = meanwhile
     robot.next(1)
     threads[0].join()
-    assert told[0] == at_once and "does not win yet. Tangy tells everybody: " in told[1]
-    telling.in_turn(command)
+    assert told[0] == at_once
+    assert told[1].startswith("Tangy tells everybody: Card 17 does not win yet.")
+    telling.queue(command)()
     assert told[2] == "Card 17 (user3) does not win yet."
+
+
+def test_lines_answer_each_command_that_waits_behind_another(robot: Robot) -> None:
+    told = list[str]()
+    progress = ProgressLines(robot.control, str)
+    telling = GameTelling(robot.control, str, told.append, progress, lambda events: [])
+    claims = [ClaimCard(17, "user3"), ClaimCard(18, "user1")]
+    queued = [telling.queue(claim) for claim in claims]
+    result = "Card {} ({}) does not win yet."
+    assert told == [result.format(17, "user3"), result.format(18, "user1")]
+    leave = [telling.queue(GoesAway(person)) for person in ("user1", "user2")]
+    waits = [waits_words(GoesAway(person), str) for person in ("user1", "user2")]
+    wait_until(lambda: sorted(told[2:]) == waits)
+    del told[:]
+    for task in (*queued, *leave):
+        telling.tell(task())
+    assert [line.partition(":")[0] for line in told] == [
+        *("Tangy tells everybody", "Tangy tells everybody"),
+        *(noted_words(StaffNote("goes", person), str) for person in ("user1", "user2")),
+    ]
+
+
+def test_lines_tell_a_result_again_if_it_has_changed(robot: Robot) -> None:
+    told = list[str]()
+    progress = ProgressLines(robot.control, str)
+    telling = GameTelling(robot.control, str, told.append, progress, lambda events: [])
+    task = telling.queue(ClaimCard(17, "user3"))
+    numbers = robot.world.numbers_on(17)
+    assert numbers is not None
+    robot.world.called.extend(numbers)  # meanwhile
+    telling.tell(task())
+    assert "does not win yet" in told[0]
+    assert told[1].startswith("Card 17 (user3) wins. Tangy tells everybody: ")
 
 
 def test_who_leaves_and_comes_back_during_a_step_is_here(robot: Robot) -> None:
