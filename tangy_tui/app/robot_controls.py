@@ -205,11 +205,12 @@ class RobotControls:
             return StaffNote("not playing", person)
         if robot.cards.numbers_on(card) is None:
             return StaffNote("no such card", str(card))
-        before = robot.cards.dealt.owner(card)
+        before, had = robot.cards.dealt.owner(card), robot.cards.dealt.card_of(person)
         robot.cards.dealt.give(person, card)
         self._note("card given", person=person, detail=str(card))
         others = (before,) if before not in ("", person) else ()
-        return StaffNote("card given", person, str(card), others)
+        instead = str(had) if had not in (None, card) else ""
+        return StaffNote("card given", person, str(card), others, instead)
 
     def _tell(self, robot: LiveWorld, command: Tell) -> StaffNote:
         """Report to a declared activity what a person says or does."""

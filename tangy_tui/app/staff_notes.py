@@ -105,6 +105,8 @@ class StaffNote:
     """Words of the activity that the note quotes."""
     people: tuple[str, ...] = ()
     """The ids of people it names."""
+    before: str = ""
+    """The number of another card that a person had until now."""
 
 
 @dataclass(frozen=True, slots=True)

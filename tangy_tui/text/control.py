@@ -171,7 +171,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"Tangy tells everybody: {noted.words}"
         case "card given":
             before = "".join(f" It counted as {name(one)}'s until now." for one in noted.people)
-            return f"{name(about)} has card {noted.words}.{before}"
+            had = f" {name(about)} had card {noted.before} before." if noted.before else ""
+            return f"{name(about)} has card {noted.words}.{had}{before}"
         case "patterns":
             already = f" It is played for {noted.words} already." if noted.words else ""
             return f"Played for: {about}.{already}"

@@ -15,6 +15,7 @@ from tangy_tui.app.game_commands import ClaimCard, ComesIn, GoesAway, HasCard
 from tangy_tui.app.staff_notes import REFUSALS, DoneKind, NoteKind, StaffNote
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.confirmations import confirmation_words
+from tangy_tui.text.control import noted_words
 from tests.app.test_interruption import Robot
 from tests.app.test_planned_games import Planned
 
@@ -87,6 +88,18 @@ def test_a_card_that_staff_name_is_known_before_a_visit_and_names_its_owner(taug
     assert control.apply(HasCard("user9", 3)) == [StaffNote("not playing", "user9")]
     assert control.apply(HasCard("user1", 10**5)) == [StaffNote("no such card", "100000")]
     assert dealt.card_of("user1") is None
+    workspace.close()
+
+
+def test_a_card_that_replaces_another_names_it(taught: Path) -> None:
+    workspace = Workspace(taught)
+    control = Robot(workspace).control
+    control.apply(HasCard("user1", 31))
+    (again,) = control.apply(HasCard("user1", 31))
+    (given,) = control.apply(HasCard("user1", 17))
+    assert isinstance(again, StaffNote) and isinstance(given, StaffNote)
+    assert noted_words(again, str) == "user1 has card 31."
+    assert noted_words(given, str) == "user1 has card 17. user1 had card 31 before."
     workspace.close()
 
 
