@@ -175,13 +175,15 @@ class GameController(HandingOver):
                     return []
             joined = self._interrupted_at is not None
             past = self._take_past()
+            first = past is None and not self.supervision.games
+            waits = self.robot.wait_on(self.supervision.store) if first else {}
             events = self.supervision.begin(past, self.by)
             if stopped and not joined:  # before there was a game to log it in
                 self.note("stopped", by=self.stopped_by)
             world = self.supervision.world
             self.plan.take_up(() if past is None else past.claims)
             if past is None:
-                self._watch.begin(world.seconds)
+                self._watch.begin(world.seconds, waits)
             else:
                 self._watch.resume(world.seconds, past, world.activity)
                 if not self.going:

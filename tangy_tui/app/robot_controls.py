@@ -25,6 +25,7 @@ from tangy_tui.app.game_commands import (
     Tell,
 )
 from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.app.waiting_on import wait_on
 from tangy_tui.learning.policy import Decision
 from tangy_tui.monitoring.attention import goes_to_people
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.help_requests import SignState
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_hw.robot_client.staff_card_reports import StaffCardReports
+    from tangy_profiles.store import Store
 
 STOPPED, ENDED = "staff stopped it", "staff ended the game"
 PROGRAM_ENDS = "the program ends"
@@ -90,6 +92,10 @@ class RobotControls:
             return tuple(self._robot.eyes.sayable)
         now = as_present(self._robot)
         return () if now is None else tuple(sayable(now.ahead))
+
+    def wait_on(self, store: Store) -> dict[str, float]:
+        """Let people wait on who asked in vain before it was switched on; return how long (s)."""
+        return {} if self._robot is None else wait_on(store, self._robot)
 
     def hold_calls(self, *, held: bool) -> None:
         """Hold the count-down to the next call, or let it go on."""

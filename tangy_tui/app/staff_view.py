@@ -7,7 +7,7 @@ at any rate while the game runs.
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -79,11 +79,15 @@ class StaffWatch:
         self._asks: dict[str, float] = {}
         self._visited: dict[str, float] = {}
 
-    def begin(self, now: float) -> None:
-        """Start the clock of a game at a time in s; who still waits has waited since they asked."""
-        waits = {person: since for person, since in self._asks.items() if since <= now}
+    def begin(self, now: float, waits: Mapping[str, float] | None = None) -> None:
+        """Start the clock of a game at a time in s; who still waits has waited since they asked.
+
+        `waits` is how long (s) people have waited who asked before the robot was switched on.
+        """
+        asks = {person: since for person, since in self._asks.items() if since <= now}
         self._clear()
-        self._began, self._asks = now, waits
+        earlier = {person: now - wait for person, wait in (waits or {}).items()}
+        self._began, self._asks = now, {**earlier, **asks}
 
     def end(self, now: float) -> None:
         """Stop the clock at a time in s: the game is over. Later calls change nothing."""

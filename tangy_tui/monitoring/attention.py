@@ -174,7 +174,7 @@ def _attend(replay: GameReplay, asked: dict[str, float]) -> dict[str, Attention]
         waited = frozenset(asked) if before is None else requests[before.number]
         sent |= {who for step, who in replay.unasked if step == done.number and who not in waited}
         if before is not None:
-            _count_between(replay, asked, done, waited | sent)
+            _count_between(replay, asked, (before, done), waited | sent)
         before, waiting = done, requests[done.number]
         _count_requests(found, asked, done, waiting - sent)
         sent &= waiting
@@ -233,13 +233,14 @@ def _count_visit(found: dict[str, Attention], done: Done, before: str) -> None:
 
 
 def _count_between(
-    replay: GameReplay, asked: dict[str, float], done: Done, waited: frozenset[str]
+    replay: GameReplay, asked: dict[str, float], steps: tuple[Done, Done], waited: frozenset[str]
 ) -> None:
     """Record requests that began between two steps, as in live games."""
+    before, done = steps
     for user in done.state.users:
         waits = user.request == "AR" and done.state.place != user.id
         if waits and user.id in replay.game.people and user.id not in waited | asked.keys():
-            asked[user.id] = done.begun
+            asked[user.id] = max(before.over, done.since.get(user.id, done.begun))
 
 
 def _count_requests(
@@ -256,7 +257,7 @@ def _count_requests(
             found[user.id].asked.append(Wait(max(0.0, done.over - since)))
             found[user.id].spans.append((max(0.0, since), max(since, done.over)))
         if waits and user.id not in asked and not _is_with(done, user.id):
-            asked[user.id] = done.over
+            asked[user.id] = max(done.begun, done.since.get(user.id, done.over))
 
 
 def _is_with(done: Done, person: str) -> bool:

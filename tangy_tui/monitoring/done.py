@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.declared.activity import DeclaredActivity
@@ -44,6 +44,8 @@ class Done:
     """Whether people stopped the robot before it was done."""
     ended: bool = False
     """Whether staff ended the game before it was done."""
+    since: Mapping[str, float] = field(default_factory=dict)
+    """When each person asked who asks after it, in s since the game began; not in old logs."""
 
 
 def done_of(
@@ -96,4 +98,5 @@ def done_of(
         wins=behaviour is not None and bool(behaviour.needs) and step.completed,
         memory=step.memory,
         stopped=stopped and not step.completed,
+        since=dict(zip(step.asking or (), step.since or (), strict=False)),
     )

@@ -76,7 +76,7 @@ class Supervision:
         self.robot = robot
         self._idle = 0
         self._to_come = tuple(to_come)
-        self._store = store
+        self.store = store
         self.effects_of = effects_of
         self.detector = Detector(game.world.activity, robot, effects_of(game.policy))
         game.contradicts = self.detector.contradicts
@@ -297,7 +297,7 @@ class Supervision:
         """Log an action of staff in a game, or in one that is interrupted (see `StaffAction`)."""
         if not self.over or self._interrupted:
             game, now = self.game, max(self.seconds, self.game.log.seconds)  # after the last step
-            self._store.append(StaffAction(game=game.game, did=did, by=by, seconds=now, **what))
+            self.store.append(StaffAction(game=game.game, did=did, by=by, seconds=now, **what))
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Carry out a teacher's answer, and go on."""
@@ -332,9 +332,9 @@ class Supervision:
         question, fault = self.question, self._asked_about(self.question)
         if question is None or fault is None or not self.acceptable:
             return told
-        with self._store.transaction():
+        with self.store.transaction():
             acted = self.watch.acted[fault.id]
-            accepted.accept(self._store, self.world.activity, fault, acted, by)
+            accepted.accept(self.store, self.world.activity, fault, acted, by)
             told += self._answered(question, RecoveryEvent("accepted", self.seconds, by=by))
         self.game.withdraw()
         self.detector.effects = self.effects_of(self.policy)

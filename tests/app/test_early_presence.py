@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
 from threading import Thread
@@ -12,6 +13,7 @@ import pytest
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
+from tangy_profiles.store import Store
 from tangy_tui.app.game_commands import (
     AskFor,
     ClaimCard,
@@ -251,3 +253,24 @@ def test_for_whom_staff_asked_in_vain_still_waits_in_the_next_game(robot: Robot)
     robot.next(2)  # which open the game
     robot.world.observe()
     assert robot.world.tracker.queue == ["user3"]
+
+
+def test_for_whom_staff_asked_in_vain_still_waits_in_a_game_that_is_set_up_anew(
+    robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user3"))
+    robot.control.apply(AskFor("user4"))
+    robot.control.view()
+    robot.link.time += 300.0
+    robot.next(1)  # to user3
+    robot.control.apply(EndGame())
+    anew = Robot(robot.workspace)  # switched on again
+    assert anew.world.queue == ("user4",)
+    (waits,) = [one.waits for one in anew.control.view().people if one.id == "user4"]
+    assert waits is not None and 300.0 <= waits < 400.0
+    anew.next(2)
+    anew.control.apply(EndGame())
+    later = datetime.now(UTC) + timedelta(hours=1)
+    monkeypatch.setattr(Store, "now", lambda store: later)
+    assert Robot(robot.workspace).world.queue == ()

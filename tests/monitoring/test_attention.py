@@ -83,6 +83,9 @@ def replay_of(*states: ActivityState, behaviour: str = "b", target: str = "") ->
     return found
 
 
+ASKS, REST = state(FRONT, ["ann"]), state(FRONT)
+
+
 @pytest.mark.parametrize(("plays_on", "won"), [(False, 1), (True, 2)])
 def test_a_win_that_is_celebrated_again_counts_once(plays_on: bool, won: int) -> None:
     replay = replay_of(*(state(place) for place in ("ann", "ann", "bob", "bob", "ann", "ann")))
@@ -105,6 +108,17 @@ def test_a_request_during_a_step_is_counted() -> None:
     assert (ann.requests, ann.waits, ann.visits) == (1, [LENGTH], 1)
     unasked = attention_in(replace(replay, moments=moments, unasked={(2, "ann")}))["ann"]
     assert (unasked.requests, unasked.visits) == (0, 1)
+
+
+def test_a_wait_is_counted_from_when_the_person_asked_if_the_log_has_it() -> None:
+    replay = replay_of(REST, ASKS, REST, ASKS, ASKS)
+    moments = [
+        replace(m, what=replace(m.what, since={"ann": since}))
+        for m, since in zip(replay.moments, (4.0, 0.0, 4.0, 4.0), strict=True)
+        if isinstance(m.what, Done)
+    ]
+    ann = attention_in(replace(replay, moments=moments))["ann"]
+    assert ann.asked == asked(16.0, left=20.0), "a request anew is not older than its step"
 
 
 def test_a_wait_ends_on_the_arrival_of_the_robot() -> None:
@@ -215,9 +229,6 @@ def live(replay: GameReplay, begins: float) -> GameReplay:
     at = BEGUN + timedelta(seconds=begins)
     ended = at + timedelta(seconds=replay.seconds)
     return replace(replay, game=game(id=f"g{begins:g}", at=at, ended=ended, world=LIVE))
-
-
-ASKS, REST = state(FRONT, ["ann"]), state(FRONT)
 
 
 def test_a_request_that_goes_over_into_the_next_game_is_one_wait() -> None:

@@ -104,6 +104,11 @@ class HelpRequestTracker:
         self._by_word[person] = self._link.time
         self._met.discard(person)
 
+    def wait_on(self, waits: Mapping[str, float]) -> None:
+        """Take requests by word that people made so many s ago, before the robot was on."""
+        for person, wait in waits.items():
+            self._by_word.setdefault(person, self._link.time - wait)
+
     def over(self, person: str) -> None:
         """End a person's request by word."""
         self._by_word.pop(person, None)
