@@ -266,8 +266,8 @@ def _waits_words(groups: Mapping[str, Sequence[str]]) -> str:
 
 
 def quiet_words(names: Sequence[str]) -> str:
-    """Name the people who were not asked for anything."""
-    return f"Not asked for anything: {', '.join(names)}."
+    """Name the people whom Tangy did not ask to do anything."""
+    return f"Tangy did not ask these people to do anything: {', '.join(names)}."
 
 
 def attention_lines(

@@ -28,7 +28,7 @@ CARE = "What to look after"
 NOTHING_LEFT = "Nothing is left to do: every fault is over."
 WHEN = "What happened when"
 RESPONDED = "How people responded"
-NOBODY_ASKED = "Nobody was asked for anything."
+NOBODY_ASKED = "Tangy did not ask anybody to do anything."
 BELIEFS = (
     "The drawings show how likely each person is to do what Tangy asks, for each way of asking "
     "that was used: before the session (ring) and after it (dot), with the 90% interval."

@@ -22,7 +22,7 @@ from tangy_tui.monitoring.session import Session, SessionNote
 from tangy_tui.pages.staff_parts import FEW_ROWS, staff_part
 from tangy_tui.text.fault_moves import MOVES, move_words
 from tangy_tui.text.house import GAME_COLUMNS, game_rows, strategy_rows
-from tangy_tui.text.report import changes_lines, helped_words
+from tangy_tui.text.report import changes_lines, helped_words, quiet_words
 from tangy_tui.text.results import response_line
 from tangy_tui.text.session_page import drawn_words
 from tangy_tui.text.sessions import note_words
@@ -75,6 +75,11 @@ def test_reports_have_no_words_of_the_program() -> None:
         "Some faults were brought about on purpose: the wheels report nothing; "
         "chairs block every way, camera covered."
     )
+
+
+def test_the_report_says_whom_tangy_did_not_ask_to_do_anything() -> None:
+    told = "Tangy did not ask these people to do anything: Rosa, Emil."
+    assert quiet_words(["Rosa", "Emil"]) == told
 
 
 def test_the_report_says_how_a_person_won_who_had_left() -> None:
