@@ -59,7 +59,7 @@ class ClaimControls:
         self._unchecked: list[ClaimCard] = []
         """The claims that were made before an interruption, and are still to be checked."""
         self._late: list[StaffNote] = []
-        """The results of these, until staff are told."""
+        """The results of these, and what the group heard late, until staff are told."""
 
     @property
     def world(self) -> PlannedGame | None:
@@ -92,10 +92,7 @@ class ClaimControls:
             self._unchecked.append(claim)
 
     def check_left(self) -> list[Event]:
-        """Check the claims that were made before an interruption; see `late_notes`.
-
-        Also tell the group of the cards that did not win, once a winner was celebrated.
-        """
+        """Check the claims that were made before an interruption; see `late_notes`."""
         told: list[Event] = []
         world = self.world
         while world is not None and self._unchecked:
@@ -104,18 +101,24 @@ class ClaimControls:
                     self._late.append(one)
                 else:
                     told.append(one)
-        if world is not None and self._untold and not self._celebrates(world):
-            self._tell_left(world)
         return told
 
-    def _tell_left(self, world: PlannedGame) -> None:
-        """Tell the group of the cards that it was not told of during a celebration."""
+    def tell_left(self) -> bool:
+        """Tell the group of the cards that do not win, once a winner was celebrated.
+
+        Return whether it was told something now; see `late_notes`.
+        """
+        world = self.world
+        if world is None or not self._untold or self._celebrates(world):
+            return False
         present, wrong = world.patterns.present, world.activity.rules.claim_wrong
         cards = [card for card in self._untold if not world.wins(card)]
         self._untold = []
         if cards and (said := joined(wrong, cards, present.label if present else "")):
             world.announce(said)
             self._late.append(StaffNote("claims told", words=said))
+            return True
+        return False
 
     def _celebrates(self, world: PlannedGame) -> bool:
         """Return whether a winner is still to be celebrated, or others may have won as well."""
@@ -125,7 +128,7 @@ class ClaimControls:
         return waits or bool(due)
 
     def late_notes(self) -> list[StaffNote]:
-        """Return the results of claims from before an interruption, each once."""
+        """Return results of interrupted claims, and what the group heard late, each once."""
         told, self._late = self._late, []
         return told
 

@@ -202,6 +202,8 @@ class GameController(HandingOver):
                 return game.look()
             if left := self.plan.check_left():
                 return left
+            if self.plan.tell_left():  # staff read so before the next step
+                return []
             if self.taking_over and not game.waiting:
                 return self._ask_next()
             if not (self._may_step() and self.awake()):

@@ -167,7 +167,8 @@ class StaffLines:
             while not self._game.over:
                 halted = self._game.halted is not None
                 if controller.phase == "running" or (expert if halted else scripted):
-                    self._telling.tell(go_on_by_script(controller, expert=expert))
+                    events = go_on_by_script(controller, expert=expert)
+                    self._telling.tell([*controller.plan.late_notes(), *events])
                     continue
                 self._questions.prompt(self._typed)
                 line = None if scripted else self._read()

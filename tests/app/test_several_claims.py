@@ -80,17 +80,32 @@ def test_the_group_hears_of_wrong_cards_after_the_celebration(
     note = claim(robot, 19, "user1")
     assert noted_words(note, str) == f"Card 19 (user1) does not win yet. {CELEBRATES_FIRST}"
     claim(robot, 20, "user4")
-    robot.control.plan.check_left()
+    robot.control.plan.tell_left()
     assert announced == []
     robot.control.supervision.game.change("played on", person="user2", by="")
     del announced[:]
-    robot.control.plan.check_left()
+    robot.control.plan.tell_left()
     said = "Card 19 does not win yet. Card 20 does not win yet. Let us play on."
     assert announced == [said]
     (told,) = robot.control.plan.late_notes()
     assert noted_words(told, str) == f"Tangy tells everybody: {said}"
-    robot.control.plan.check_left()
+    robot.control.plan.tell_left()
     assert announced == [said]
+
+
+def test_staff_read_what_the_group_hears_late_before_the_next_step(
+    robot: Robot, announced: list[str]
+) -> None:
+    claim(robot, 17, "user2")
+    claim(robot, 19, "user1")
+    game = robot.control.supervision.game
+    game.change("played on", person="user2", by="")
+    steps = game.steps
+    assert robot.control.next() == [] and game.steps == steps
+    robot.control.next()  # also if nobody takes the note
+    assert game.steps == steps + 1
+    (told,) = robot.control.plan.late_notes()
+    assert told.kind == "claims told"
 
 
 def test_words_without_a_card_are_said_once() -> None:
