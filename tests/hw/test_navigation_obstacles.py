@@ -182,7 +182,10 @@ class TestPeople:
     @pytest.mark.parametrize("scene", ["standing", "gap", "beside", "steps in"])
     def test_no_drive_touches_a_standing_person(self, scene: str) -> None:
         for drive in drives(scene, 2, seed=7):
-            assert drive.arrived and drive.told == ""
+            assert drive.arrived and drive.silent < 1.0
+            # before a goal beside a person it may wait, rather than creep up to them, and says so
+            assert drive.told in ("", "blocked" if scene == "beside" else "")
+            assert drive.nearest > 0.2 or scene == "steps in"  # there the person comes nearer
             assert drive.nearest > 0.05 and not drive.touches
 
     @pytest.mark.slow
