@@ -21,7 +21,7 @@ from tangy_tui.text.staff_view import PAUSED, PAUSES_THEN, person_words
 from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, news_line, next_line
 from tests.app.test_interruption import Robot
-from tests.app.test_planned_games import Planned
+from tests.support.planned_games import Planned
 
 
 @pytest.fixture

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
 
 import pytest
 
@@ -23,23 +21,18 @@ from tangy_tui.app.game_commands import (
     ChoosePatterns,
     ClaimCard,
     ComesIn,
-    GameCommand,
     GoesAway,
     LetWin,
     SetPace,
     TakeBackCall,
 )
-from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.staff_view import StaffWatch
-from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
 from tangy_tui.interaction.game_events import Acted, GameChanged, GameEnded
-from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.session import read_session
-from tangy_tui.monitoring.supervision import Event
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.changes import changed_words
 from tangy_tui.text.control import noted_words
@@ -48,50 +41,7 @@ from tangy_tui.text.report import changes_lines
 from tangy_tui.text.staff_report import staff_rows
 from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, next_line
-
-
-class Planned:
-    """A run of simulated games, with all its events."""
-
-    def __init__(self, folder: Path, users: int = 4) -> None:
-        self.workspace = Workspace(folder, users=users)
-        policy, _ = load_policy(self.workspace.store, self.workspace.activity)
-        self.supervision = self.workspace.supervision(policy, 31)
-        self.control: GameController = scripted_controller(self.supervision)
-        self.events: list[Event] = []
-
-    @property
-    def world(self) -> SimulatedWorld:
-        return cast(SimulatedWorld, self.supervision.world)
-
-    def begin(self, plan: GamePlan) -> None:
-        self.world.choose(plan)
-        self.events = self.control.begin()
-
-    def play(self, calls: int = 1_000) -> None:
-        """Play until a number of calls or the end of the game."""
-        while not self.supervision.over and len(self.world.called_now) < calls:
-            self.events += go_on_by_script(self.control, expert=True)
-
-    def do(self, command: GameCommand) -> list[str]:
-        """Carry out a command; return the kinds of its events."""
-        told = self.control.apply(command)
-        return [one.kind if isinstance(one, StaffNote) else str(one.what)  # type: ignore[union-attr]
-                for one in told]  # fmt: skip
-
-    def changes(self) -> list[str]:
-        return [event.what for event in self.events if isinstance(event, GameChanged)]
-
-    def celebrated(self) -> list[str | None]:
-        acted = (event for event in self.events if isinstance(event, Acted))
-        return [a.action.target for a in acted if a.action.behaviour.needs and a.outcome.completed]
-
-
-@pytest.fixture
-def planned(taught: Path) -> Iterator[Planned]:
-    one = Planned(taught)
-    yield one
-    one.workspace.close()
+from tests.support.planned_games import Planned
 
 
 def test_a_game_continues_for_each_chosen_pattern(planned: Planned) -> None:

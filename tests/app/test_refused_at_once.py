@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import get_args
 
@@ -17,27 +16,25 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.confirmations import confirmation_words
 from tangy_tui.text.control import noted_words
 from tests.app.test_interruption import Robot
-from tests.app.test_planned_games import Planned
+from tests.support.planned_games import Planned
 
 
 @pytest.fixture
-def planned(taught: Path) -> Iterator[Planned]:
-    planned = Planned(taught)
+def begun(planned: Planned) -> Planned:
     planned.begin(GamePlan())
-    yield planned
-    planned.workspace.close()
+    return planned
 
 
-def test_a_claim_for_a_card_that_does_not_exist_names_the_cards_in_play(planned: Planned) -> None:
-    assert planned.control.refuses(ClaimCard(999)) == StaffNote("no such card", "999", "1, 2, 3, 4")
-    assert planned.control.refuses(ClaimCard(3)) is None
+def test_a_claim_for_a_card_that_does_not_exist_names_the_cards_in_play(begun: Planned) -> None:
+    assert begun.control.refuses(ClaimCard(999)) == StaffNote("no such card", "999", "1, 2, 3, 4")
+    assert begun.control.refuses(ClaimCard(3)) is None
 
 
-def test_a_person_who_does_not_play_neither_comes_nor_leaves(planned: Planned) -> None:
+def test_a_person_who_does_not_play_neither_comes_nor_leaves(begun: Planned) -> None:
     refused = StaffNote("not playing", "user9")
-    assert planned.control.refuses(GoesAway("user9")) == refused
-    assert planned.control.refuses(ComesIn("user9")) == refused
-    assert planned.control.refuses(GoesAway("user1")) is None
+    assert begun.control.refuses(GoesAway("user9")) == refused
+    assert begun.control.refuses(ComesIn("user9")) == refused
+    assert begun.control.refuses(GoesAway("user1")) is None
 
 
 def test_a_live_claim_for_a_card_of_nobody_is_refused_once_all_cards_are_known(

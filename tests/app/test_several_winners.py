@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from tangy_profiles.cards import winning_state
@@ -29,16 +26,9 @@ from tangy_tui.text.watching import now_lines
 from tangy_tui.ui.screens.play_view import ViewSource, next_line, show_view
 from tangy_tui.ui.widgets.call_board import CallBoard
 from tangy_tui.ui.widgets.staff_panel import StaffPanel
-from tests.app.test_planned_games import Planned
+from tests.support.planned_games import Planned
 
 NAMES = {"user1": "Ann", "user2": "Ben", "user3": "Cleo", "user4": "Dora"}
-
-
-@pytest.fixture
-def planned(taught: Path) -> Iterator[Planned]:
-    planned = Planned(taught)
-    yield planned
-    planned.workspace.close()
 
 
 def won_first(planned: Planned) -> str:

@@ -47,8 +47,8 @@ from tangy_tui.text.control import noted_words
 from tangy_tui.text.situations import moment_words
 from tangy_tui.text.times import local_now
 from tests.app.test_interruption import Robot
-from tests.app.test_planned_games import Planned
 from tests.app.test_staff_facts import Game
+from tests.support.planned_games import Planned
 
 NAMES = {"user1": "Carl", "user2": "Ida", "user3": "Berta", "user4": "Otto"}
 
