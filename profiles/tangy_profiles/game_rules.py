@@ -28,6 +28,18 @@ COMMAND_WORDS = frozenset({
 """First words of what staff type in any game, so no word for a claim."""
 
 
+_DETERMINERS = frozenset({"a", "an", "the", "one", "1", "single"})
+_COUNTS = {"2": "two", "3": "three", "4": "four"}
+
+
+def _bare(name: str) -> str:
+    """Return the name of a pattern without a determiner before it, and with its count as a word."""
+    first, _, rest = name.partition(" ")
+    if rest and first in _DETERMINERS:
+        return _bare(rest)
+    return f"{_COUNTS.get(first, first)} {rest}".rstrip()
+
+
 def next_pace(pace: float, by: int) -> float:
     """Return the next shorter (-1) or longer (1) pace in s; the last one stays."""
     if by < 0:
@@ -116,14 +128,14 @@ class GameRules:
         return self.more_numbers.format(numbers=few, count=len(labels) - most)
 
     def pattern(self, name: str) -> Pattern:
-        """Return a pattern by its name or label, in any case.
+        """Return a pattern by its name or label, in any case; "one line" is a line.
 
         Raises:
             TangyError: there is none; the message suggests the nearest name.
         """
         wanted = " ".join(name.split()).casefold()
         for pattern in self.patterns:
-            if wanted in (pattern.name.casefold(), pattern.label.casefold()):
+            if _bare(wanted) in (_bare(pattern.name.casefold()), _bare(pattern.label.casefold())):
                 return pattern
         known = [pattern.name for pattern in self.patterns]
         raise TangyError(plain(f"There is no pattern {name!r}: {nearest(wanted, known)}"))

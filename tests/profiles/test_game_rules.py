@@ -57,6 +57,22 @@ def test_a_pattern_is_found_by_name_or_label() -> None:
         BINGO.rules.pattern("frames")
 
 
+@pytest.mark.parametrize(
+    ("said", "name"),
+    [
+        ("one line", "line"),
+        ("1 line", "line"),
+        ("a single line", "line"),
+        ("2 lines", "two lines"),
+        ("the four corners", "four corners"),
+        ("4 corners", "four corners"),
+        ("a full card", "full card"),
+    ],
+)
+def test_a_pattern_is_found_as_people_count_it(said: str, name: str) -> None:
+    assert BINGO.rules.pattern(said).name == name
+
+
 def test_a_strength_excludes_strategies_that_it_does_not_name() -> None:
     assert BINGO.rules.left_out("gentle") == ("scarcity",)
     assert BINGO.rules.left_out("") == () == BINGO.rules.left_out("full")
