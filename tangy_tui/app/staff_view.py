@@ -136,7 +136,9 @@ class StaffWatch:
             0.0 if self._began is None else max(0.0, now - self._began),
             scene.called,
             tuple(
-                _with_facts(_with_plan(self._person(person, scene, now, robot), planned), world)
+                _with_facts(
+                    _with_plan(self._person(person, scene, now, robot), planned), world, over=over
+                )
                 for person in people
             ),
             0.0 if planned is None else planned.pace,
@@ -172,8 +174,8 @@ def _with_plan(person: PersonNow, world: PlannedGame | None) -> PersonNow:
     return replace(person, claims=person.id in world.vouched, calls_first=calls)
 
 
-def _with_facts(person: PersonNow, world: object) -> PersonNow:
-    """Add what a game declared by facts counts for a person."""
+def _with_facts(person: PersonNow, world: object, *, over: bool) -> PersonNow:
+    """Add what a game declared by facts counts for a person; `over`: nobody has the turn."""
     game = getattr(world, "game", None)
     if not isinstance(game, DeclaredGame):
         return person
@@ -183,7 +185,7 @@ def _with_facts(person: PersonNow, world: object) -> PersonNow:
         for fact in declared.facts.values()
         if fact.kind == "count" and fact.per_player
     )
-    turn = declared.takes_turns and game.players[game.turn] == person.id
+    turn = not over and declared.takes_turns and game.players[game.turn] == person.id
     return replace(
         person,
         counts=counts,

@@ -37,6 +37,15 @@ def test_scores_and_the_turn_stand_beside_the_names_where_nobody_is_visited() ->
     assert lines(world) == ["score 1", "has the turn, score 0"]
 
 
+def test_nobody_has_the_turn_in_a_game_that_is_over() -> None:
+    watch = StaffWatch()
+    watch.begin(0.0)
+    watch.end(4.0)
+    scene = Scene(FRONT, (), dict.fromkeys(PEOPLE, ""), (), None)
+    people = watch.look(scene, PEOPLE, 5.0, Game()).people
+    assert [person_words(one) for one in people] == ["score 0", "score 0"]
+
+
 def test_a_person_of_a_game_with_visits_has_none_yet() -> None:
     assert lines(object()) == ["no visit yet", "no visit yet"]
 

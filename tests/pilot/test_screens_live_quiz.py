@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tangy_hw.robot_client.declared_live_world import DeclaredLiveWorld
+from tangy_tui.app.robot_controls import PersonWait, RobotControls
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.typed_commands import TITLE
 from tangy_tui.ui.dialogs.staff_line import CommandDialog
 from tangy_tui.ui.screens.help import help_for
+from tangy_tui.ui.widgets.staff_panel import StaffPanel
 from tests.pilot.live_games import HeldLink, held_world, live, live_program
 from tests.support.teaching import taught_policy
 from tests.support.waiting import until_shown
@@ -42,3 +44,16 @@ async def test_a_quiz_has_no_keys_and_no_examples_about_cards(
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, CommandDialog))
         assert TITLE in pilot.text() and "left Rosa" in pilot.text()
         assert "pace" not in pilot.text().partition(TITLE)[2].partition("enter does it")[0]
+
+
+@pytest.mark.slow
+async def test_the_question_stays_in_view_while_tangy_waits_for_the_answer(
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waits = PersonWait("act", "user1", 8)
+    monkeypatch.setattr(RobotControls, "waits_for", property(lambda controls: waits))
+    world = held_world(workspace, HeldLink(tuple(workspace.names)), DeclaredLiveWorld)
+    async with run(app=live_program(workspace, world, taught_policy(workspace))) as pilot:
+        panel = live(pilot).query_one(StaffPanel)
+        await until_shown(pilot, lambda: "Tangy said:" in str(panel.border_title))
+        assert "Tangy waits for User 1, up to 8 s." in pilot.text()

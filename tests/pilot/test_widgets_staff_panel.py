@@ -125,3 +125,14 @@ async def test_a_low_panel_writes_the_call_in_words_and_shows_people(run: Run) -
         await pilot.pause()
         assert "O-66   1 called, 0:15 so far" in pilot.text() and "█" not in pilot.text()
         assert pilot.text().count("asks 2 min") >= 4
+
+
+async def test_facts_of_a_game_without_calls_begin_where_people_do(run: Run) -> None:
+    async with run(Panel(), size=(80, 24)) as pilot:
+        panel = pilot.app.screen.query_one(StaffPanel)
+        panel.show("", "Tangy waits.", ["0:15 so far"], [("User 1", "score 0", "text")])
+        await pilot.pause()
+        columns = {
+            line.index(one) for line in pilot.lines() for one in ("0:15", "User 1") if one in line
+        }
+        assert len(columns) == 1

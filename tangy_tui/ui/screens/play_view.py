@@ -53,7 +53,7 @@ def show_view(panel: StaffPanel, board: CallBoard, view: StaffView, shown: ViewS
         _facts(view, shown, last=not columns),
         person_lines(view.people, shown.name),
         [column_row(column, view.called, BOARD) for column in columns],
-        text.said_words(shown.said) if shown.said and as_planned(shown.world) else "",
+        text.said_words(shown.said) if shown.said else "",
         news_line(shown),
     )
 
@@ -70,11 +70,10 @@ def next_line(shown: ViewSource) -> str:
     if control.joined:
         return sets_up_words(control.welcomes)
     if control.supervision.over:
-        said = text.said_words(shown.said) if shown.said and as_planned(world) is None else ""
         if not control.supervision.games:
             return text.PAUSED if control.past is not None else ""
         won = "" if (game := as_planned(world)) is None else _won_words(game, shown.name)
-        return " ".join(filter(None, (text.OVER, won, shown.report, said)))
+        return " ".join(filter(None, (text.OVER, won, shown.report)))
     if control.stopped:
         return f"{stopped_words(control.stopped_by)}."
     if control.phase == "asking":
@@ -105,8 +104,6 @@ def next_line(shown: ViewSource) -> str:
             claims=planned.vouched if planned else (),
             waits=control.robot.rests(found[0]),
         )
-    elif not words and shown.said:  # staff need to know the last question
-        words = text.said_words(shown.said)
     if control.going:
         return words
     return f"{text.PAUSES_THEN if control.stepping else text.PAUSED} {words}".strip()

@@ -192,7 +192,7 @@ class StaffPanel(RowView, can_focus=True):
         """Draw the call in blocks, and the facts beside it."""
         large = width >= LARGE_WIDTH and height >= LARGE_HEIGHT
         call = self._call.replace("-", "")
-        drawn = block_rows(call, large) if call else [""] * min(5, len(self._facts))
+        drawn = block_rows(call, large) if call else []
         if call and height < len(drawn) + 2:  # digits cut in half tell nothing
             return [self._in_words(width)]
         beside = max((cell_len(row) for row in drawn), default=0)
@@ -209,7 +209,8 @@ class StaffPanel(RowView, can_focus=True):
             block = drawn[number] if number < len(drawn) else ""
             fact = facts[number] if number < len(facts) else ""
             room = width - beside - 1
-            rows.append(((fit(block, beside + 1), "robot"), (shorten(fact, room), "text")))
+            told = (shorten(fact, room if beside else width), "text")
+            rows.append(((fit(block, beside + 1), "robot"), told) if beside else (told,))
         return rows
 
     def _in_words(self, width: int) -> Row:
