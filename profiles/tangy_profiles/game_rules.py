@@ -99,9 +99,9 @@ class GameRules:
     `claim` is the word before the number of a card that is claimed to win. `claim_right`,
     `claim_late` (another card was first), `claim_wrong`, `taken_back` and `play_on` are
     announcements; so are `all_called` (no number is left, and each person gets a visit) and
-    `nobody_won` (after these visits). A person without a visit for `unvisited` calls gets one, if
-    staff want that. See `CallsFirst`. Of more numbers than `numbers_aloud`, so many are said, in
-    the words of `more_numbers`.
+    `nobody_won` (after these visits). A person without a visit for `unvisited` calls waits for one
+    from then on like those who ask, if staff want that. See `CallsFirst`. Of more numbers than
+    `numbers_aloud`, so many are said, in the words of `more_numbers`.
     """
 
     patterns: tuple[Pattern, ...] = ()
@@ -161,7 +161,7 @@ class GamePlan:
     several: bool = False
     """Whether others with the pattern at the same call win as well."""
     visits: bool = False
-    """Whether people without a visit for a while get one."""
+    """Whether people without a visit for a while count as asking."""
     strength: str = ""
     absent: tuple[str, ...] = ()
     """Participants who have not come yet."""

@@ -44,6 +44,8 @@ class OpenRequests:
             self._calls = change.number
         elif change.what in SETTLING:
             self.people -= {change.person}
+        elif change.what == "visit":
+            self.people |= {change.person}
 
     def step(self, before: ActivityState, after: ActivityState, *, called: bool) -> None:
         """Apply a step that led from a state to the next, and whether it called a number."""

@@ -71,8 +71,8 @@ class PlannedGame:
     """The person whose card the robot is reading, before which no next step is decided."""
     said = ""
     """What the robot said last in this game, "" if the world cannot tell or it said nothing."""
-    visiting = ""
-    """The person who gets a visit without a request; "" for none."""
+    visiting: tuple[str, ...] = ()
+    """The people in the queue who get a visit without a request, in order."""
     _visited: dict[str, int]
     _row_began: float
     """When the visits since the last call began, in s of `seconds`."""
@@ -88,10 +88,10 @@ class PlannedGame:
         if plan.pace:
             self.set_pace(plan.pace)
 
-    def _begin_plan(self) -> None:
+    def begin_plan(self) -> None:
         """Apply the plan at the beginning of a game."""
         self.patterns = Patterns.of(self.activity.rules, self.own_deck, self.game_plan.patterns)
-        self.winner, self.visiting, self.all_called = "", "", False
+        self.winner, self.visiting, self.all_called = "", (), False
         self.looking = self.said = ""
         self._past_wins = ()
         self._asked_before = None
@@ -218,7 +218,7 @@ class PlannedGame:
             return self._visit_due() if self.all_called else DueChange("all called")
         if calls := self._calls_due():
             return DueChange("calls first", number=calls)
-        return self._visit_due() if self.game_plan.visits else None
+        return self._visit_due()
 
     def _may_win_as_well(self, winner: str) -> list[str]:
         """Return who asked before somebody won, and may have the pattern at the same call.
@@ -256,28 +256,27 @@ class PlannedGame:
         return len(self.called_now) - self._visited.get(person, 0)
 
     def _visit_due(self) -> DueChange | None:
-        """Return the visit that is due or put off; a visit delays no request.
+        """Return the visit without a request that is due, or over.
 
+        Who has had none for so many numbers waits from then on like those who ask, behind them.
         When all numbers have been called, each person gets one, and then the game is over.
         """
-        queue, place, calls = self.tracker.queue, self.tracker.place, len(self.called_now)
-        if self.visiting:
-            if self.visiting in queue and place != self.visiting and len(queue) > 1:
-                return DueChange("visit put off", self.visiting)
-            return None if self.visiting in queue else DueChange("visit over", self.visiting)
-        if queue or place != FRONT or not self.tracker.begun():
+        queue, rules = self.tracker.queue, self.activity.rules
+        if over := next((person for person in self.visiting if person not in queue), ""):
+            return DueChange("visit over", over)
+        if not self.tracker.begun():
             return None
-        here = [person for person in self.people if person not in self.away]
         if self.all_called:
+            if queue or self.tracker.place != FRONT:
+                return None
             unseen, won = self._unseen, self.patterns.won
             return DueChange("visit", unseen) if unseen else DueChange("nobody won", number=won)
-        if not self.activity.rules.unvisited:
+        if not self.game_plan.visits or not rules.unvisited or self.winner:
             return None
-        longest = min(here, key=lambda person: self._visited.get(person, 0), default="")
-        waited = calls - self._visited.get(longest, 0)
-        if not longest or waited < self.activity.rules.unvisited:
-            return None
-        return DueChange("visit", longest)
+        others = [p for p in self.people if p not in self.away and p not in queue]
+        longest = max(others, key=self.calls_unvisited, default="")
+        due = longest and self.calls_unvisited(longest) >= rules.unvisited
+        return DueChange("visit", longest) if due else None
 
     # ---------------------------------------------------------------------- changes
 
@@ -318,15 +317,12 @@ class PlannedGame:
                 self.away -= {person}
                 self._plan_without(self.plan_away - {person})
             case "visit":
-                self.visiting = person
+                self.visiting = (*self.visiting, person)
                 self._asks(person)
             case "calls first":
                 self.tracker.calls_first = change.number
-            case "visit put off":
-                self.visiting = ""
-                self._asks_no_more(person)
-            case "visit over":
-                self.visiting = ""
+            case "visit put off" | "visit over":  # logs of 0.6.0 and before have the first
+                self.visiting = tuple(one for one in self.visiting if one != person)
                 self._asks_no_more(person)  # a resumed game may have ended it between two steps
             case "all called":
                 self.all_called, self._visited, self.tracker.calls_first = True, {}, 0

@@ -38,7 +38,7 @@ Holder = Literal[
 """What holds the game, so that Tangy does nothing by itself; "" if nothing does."""
 
 VisitReason = Literal["", "unvisited", "all called"]
-"""Why Tangy visits a person who has not asked."""
+"""Why Tangy visits people who have not asked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,8 @@ class GameMoment:
     by_staff: frozenset[str] = frozenset()
     """The people who wait without a sign, as staff asked for them or a game was resumed."""
     visits: VisitReason = ""
-    visiting: str = ""
-    """The person who gets a visit without a request."""
+    visiting: tuple[str, ...] = ()
+    """The people who get a visit without a request."""
     unvisited: int = 0
     """After how many numbers a person who does not ask gets a visit; 0: never."""
     looking: str = ""

@@ -49,6 +49,8 @@ class PersonNow:
     """How many numbers are called before the robot goes there."""
     has_won: Sparse[bool] = False
     """Whether they have won in this game."""
+    unasked: Sparse[bool] = False
+    """Whether they get a visit although they have not asked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +173,8 @@ def _with_plan(person: PersonNow, world: PlannedGame | None) -> PersonNow:
     if world is None or not person.turn:
         return person
     calls = world.tracker.calls_first if person.turn == 1 else 0
-    return replace(person, claims=person.id in world.vouched, calls_first=calls)
+    claims, unasked = person.id in world.vouched, person.id in world.visiting
+    return replace(person, claims=claims, calls_first=calls, unasked=unasked)
 
 
 def _with_facts(person: PersonNow, world: object, *, over: bool) -> PersonNow:

@@ -45,7 +45,7 @@ def changed_words(event: GameChanged | GameChange, activity: Activity | None, na
         case "joined":
             return f"{person} has joined."
         case "visit":
-            return f"Tangy has not visited {person} for a while, and goes there now."
+            return f"Tangy has not visited {person} for a while, and goes there in turn."
         case "visit put off":
             return f"Others are asking, so {person}'s visit waits."
         case "visit over":

@@ -31,6 +31,8 @@ CLAIM_FIRST = "first because of the claim"
 """Why Tangy goes to a person before those who have waited longer."""
 FIRST_BY_CLAIM = "first: a claim"
 """The same, shorter."""
+VISIT_DUE = "visit is due"
+"""Tangy goes to a person who has not asked."""
 OVER = "The game is over."
 
 
@@ -194,7 +196,7 @@ def person_words(person: PersonNow) -> str:
             calls = counted(person.calls_first, "number")
             asked = (
                 FIRST_BY_CLAIM if person.claims else "",
-                f"asks{waits}",
+                VISIT_DUE if person.unasked else f"asks{waits}",
                 f"after {calls}" if person.calls_first else "",
                 HAS_WON if person.has_won else "",
                 seen,

@@ -215,11 +215,12 @@ def _because(moment: GameMoment, person: PersonNow, name: Name) -> str:
         return ", because of the claim"
     if not person.turn:
         return ""
-    who, visits = name(person.id), moment.visits if person.id == moment.visiting else ""
+    who, visits = name(person.id), moment.visits if person.id in moment.visiting else ""
     if visits == "all called":
         return ", because all numbers have been called and Tangy looks at each card"
     if visits == "unvisited":
-        return f", because nobody asks and {who} has had no visit for long"
+        long = counted(moment.unvisited, "number") if moment.unvisited else "long"
+        return f", because {who} has had no visit for {long}"
     others = [one for one in moment.people if one.turn and one.id != person.id]
     longest = all((one.waits or 0) <= (person.waits or 0) for one in others)
     if not others and person.id in moment.by_staff:
@@ -303,7 +304,10 @@ def _asked_lines(turn: PersonTurn, name: Name) -> list[str]:
         told.append(f"{listed(claims)} {'comes' if len(claims) == 1 else 'come'} first: a claim.")
     if before:
         goes = f"Before {who}, Tangy goes to {names}"
-        told.append(f"{goes}{', in this order' if len(before) > 1 else ''}.")
+        longer = all((one.waits or 0.0) > (person.waits or 0.0) for one in before)
+        they = "they have" if len(before) > 1 else f"{names} has"
+        why = f": {they} waited longer" if longer and not claims else ""
+        told.append(f"{goes}{', in this order' if len(before) > 1 else ''}{why}.")
         if moment.calls_between and not moment.calls_first:
             told.append("In between it may call some numbers.")
     else:
@@ -315,8 +319,9 @@ def _asked_lines(turn: PersonTurn, name: Name) -> list[str]:
 def _asked_words(person: PersonNow, moment: GameMoment, name: Name) -> str:
     """Tell for how long a person has waited, and whether that is because of a request."""
     who, waits = name(person.id), person.waits or 0.0
-    if person.id == moment.visiting:
-        return f"Tangy visits {who}{_because(moment, person, name)}."
+    if person.id in moment.visiting:
+        in_turn = " in turn" if moment.visits == "unvisited" else ""
+        return f"Tangy visits {who}{in_turn}{_because(moment, person, name)}."
     if waits < STEP_SECONDS:
         return (
             f"{who} waits for Tangy." if person.id in moment.by_staff else f"{who} has just asked."
@@ -356,9 +361,10 @@ def _not_asked_lines(turn: PersonTurn, who: str) -> list[str]:
     if moment.won:
         told.append("Somebody has won, so nobody else gets a visit for now.")
     elif moment.unvisited:
+        limit = counted(moment.unvisited, "number")
         told.append(
-            f"While nobody asks, Tangy goes to people after {counted(moment.unvisited, 'number')} "
-            f"without a visit. {who} has had {turn.unvisited}."
+            f"After {limit} without a visit, Tangy goes to people as if they had asked. "
+            f"{who} has had {turn.unvisited}."
         )
     return told
 

@@ -296,14 +296,15 @@ def test_who_gets_a_visit_without_asking_is_told_the_rule(taught: Path) -> None:
     name = planned.workspace.name
     resting = next(one.id for one in planned.control.view().people if one.state == "plays")
     told = text.about_lines(planned.control, AsksAbout((resting,)), name)
-    assert any(line.startswith("While nobody asks, Tangy goes to people after 15") for line in told)
+    rule = "After 15 numbers without a visit, Tangy goes to people as if they had asked."
+    assert any(line.startswith(rule) for line in told)
     planned.workspace.close()
 
 
 @pytest.mark.parametrize(
     ("all_called", "reason"),
     [
-        (False, "because nobody asks and Berta has had no visit for long."),
+        (False, "because Berta has had no visit for 15 numbers."),
         (True, "because all numbers have been called and Tangy looks at each card."),
     ],
 )
@@ -312,8 +313,12 @@ def test_a_visit_without_a_request_is_told_as_one(
 ) -> None:
     robot.next(2)
     robot.world.all_called = all_called
+    robot.world.change(GameChange(game="", steps=2, what="visits on"))
     robot.world.change(GameChange(game="", steps=2, what="visit", person="user3"))
-    assert about(robot, "user3")[0] == f"Tangy visits Berta, {reason}"
+    assert (
+        about(robot, "user3")[0]
+        == f"Tangy visits Berta{', ' if all_called else ' in turn, '}{reason}"
+    )
     assert now(robot)[0] == f"Tangy goes to Berta next, {reason}"
 
 
@@ -497,7 +502,7 @@ def test_who_and_what_comes_before_a_person_is_told_in_order() -> None:
     assert lines == [
         "Cleo asked 40 s ago.",
         "Tangy is on its way to Ann.",
-        "Before Cleo, Tangy goes to Ben.",
+        "Before Cleo, Tangy goes to Ben: Ben has waited longer.",
         "In between it may call some numbers.",
         "Tangy has not been with Cleo in this game.",
     ]

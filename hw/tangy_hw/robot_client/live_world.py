@@ -101,7 +101,7 @@ class LiveWorld(LivePlan):
         self._begin()
 
     def _begin(self) -> None:
-        self._begin_plan()
+        self.begin_plan()
         self.tracker = Tracker(self.activity, self.people)
         self.calls = CallOrder(self.activity.deck.shuffled(self._order.random))
         self.cards.begin()

@@ -77,7 +77,7 @@ class SimulatedWorld(PlannedGame):
 
     def begin(self) -> ActivityState:
         """Deal new cards and begin a game; return its first state."""
-        self._begin_plan()
+        self.begin_plan()
         activity, deck, cards = self.activity, self.activity.deck, self._cards.random
         self.over = False
         self.tracker = Tracker(activity, self.people)
