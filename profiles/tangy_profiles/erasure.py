@@ -33,6 +33,8 @@ WHOSE = frozenset(("teacher", "by", "who"))
 OWN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
 """The kinds of event whose `what` is one of Tangy's own words."""
 
+OWN_PHRASE = "own phrase"
+"""The kind of event whose `text` is a phrase that a teacher taught."""
 SAID = frozenset(("told", "heard", "noted"))
 """What staff did if the `detail` of their action holds what a person said, or a note in words."""
 
@@ -56,6 +58,10 @@ _HEARD = (
     rb'("target":"%b"(?:(?!"heard":|\dT\d\d:).){0,4000}"heard":")((?:[^"\\\x00-\x1f]|\\.)*)(?=")'
 )
 """Words heard for a person, in the bytes of a log, before the time of the next event."""
+_OWN_PHRASE = re.compile(
+    rb'("teacher":"(?:[^"\\\x00-\x1f]|\\.)*","text":")((?:[^"\\\x00-\x1f]|\\.)*)(?=","behaviour":)'
+)
+"""A teacher's own phrase, in the bytes of a log."""
 _SHOWN = re.compile(
     r"""(?i)\b(title|alt|aria-label|content|value|label)(\s*=\s*)("[^"]*"|'[^']*')"""
 )
@@ -103,6 +109,8 @@ class NameEraser:
         self._anchors |= {_anchor(form) for form in parts}
         spelt = "|".join(map(re.escape, parts)) or "(?!)"
         self._parts = re.compile(rf"\b(?:{spelt})\b", re.I)
+        own = {form for word in words if not _is_small(word) for form in _forms(word)}
+        self._own = self._pattern(typed | own, (), but)
         self._bytes = [
             _bytes_pattern(form, stand_in, self._stays([form], but), flags)
             for forms, flags in ((anywhere, re.I), (written, re.NOFLAG))
@@ -134,9 +142,12 @@ class NameEraser:
         """Return the body of an event without the name in its free texts.
 
         In a typed or spoken command for the person, every part of the name is erased too, as people
-        say "Rosa" or "Frau Weber".
+        say "Rosa" or "Frau Weber". So it is in a teacher's own phrase, which may be for nobody, but
+        common words stay there ("may").
         """
         did = body.get("did")
+        if kind == OWN_PHRASE and isinstance(body.get("text"), str):
+            return {**body, "text": self._put(self._own, body["text"])}
         left = {key: self._value(value, _kept_in(kind, key, did)) for key, value in body.items()}
         heard = left.get("heard")
         if left.get("target") == self.stand_in and isinstance(heard, str):
@@ -157,6 +168,7 @@ class NameEraser:
         """
         if self._commands:
             data = self._heard.sub(self._heard_bytes, data)
+        data = _OWN_PHRASE.sub(self._own_bytes, data)
         for found in self._bytes:
             data = found.sub(lambda m: b"-" * len(m["name"]) if m["name"] else m[0], data)
         return data
@@ -176,6 +188,13 @@ class NameEraser:
         left = _TOKEN.sub(
             lambda m: m[0] if self._command_word(m) == m[0] else "-" * len(m[0].encode()), heard
         )
+        return match[1] + left.encode(errors="surrogateescape")
+
+    def _own_bytes(self, match: re.Match[bytes]) -> bytes:
+        text = match[2].decode(errors="surrogateescape")
+        if self._own is None or not self.may_hold(text):
+            return match[0]
+        left = self._own.sub(lambda m: "-" * len(m[0].encode()) if m["name"] else m[0], text)
         return match[1] + left.encode(errors="surrogateescape")
 
     def _command_word(self, match: re.Match[str]) -> str:

@@ -36,9 +36,13 @@ _SPOKEN = re.compile(r"[a-z']+( [a-z']+)*")  # as the phrases of activities are 
 
 
 def own_phrases(store: Store, activity: str, teacher: str) -> dict[str, str]:
-    """Return the phrases that a teacher has kept for an activity, with their behaviours."""
+    """Return the phrases that a teacher has kept for an activity, with their behaviours.
+
+    Without those from which a forgotten person's name was erased: nobody says them any more.
+    """
     noted = _noted(store, activity, teacher)
-    return {text: one.behaviour for text, one in noted.items() if one.kept}
+    kept = {text: one.behaviour for text, one in noted.items() if one.kept}
+    return {text: behaviour for text, behaviour in kept.items() if _SPOKEN.fullmatch(text)}
 
 
 def forget_phrase(store: Store, activity: str, teacher: str, text: str) -> bool:

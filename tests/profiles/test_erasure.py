@@ -96,12 +96,38 @@ def test_erasing_a_body_changes_only_texts() -> None:
         ("fault", {}, "console", "user2 sang it"),
         ("demonstration step", {}, "heard", "user2 sang it"),
         ("of another version", {}, "anything", "user2 sang it"),
+        ("own phrase", {"teacher": "Ada"}, "text", "user2 sang it"),
+        ("own phrase", {"text": "let us sing"}, "behaviour", "Rosa sang it"),
     ],
 )
 def test_a_name_is_erased_where_people_spoke_or_wrote(
     kind: str, body: dict[str, str], key: str, after: str
 ) -> None:
     assert ROSA.body(kind, {**body, key: "Rosa sang it"}) == {**body, key: after}
+
+
+@pytest.mark.parametrize(
+    ("text", "after"),
+    [
+        ("rosa shall sing", "user2 shall sing"),
+        ("frau weber's turn", "frau user2's turn"),
+        ("let rosa weber begin", "let user2 begin"),
+        ("may we begin", "may we begin"),
+        ("the weber march", "the weber march"),
+        ("roast it", "roast it"),
+    ],
+)
+def test_a_teachers_own_phrase_loses_each_part_of_the_name_but_common_words(
+    text: str, after: str
+) -> None:
+    eraser = NameEraser(["Rosa May Weber", "Rosa Weber"], "user2", but=["the weber march"])
+    body = {"activity": "bingo", "teacher": "Rosa", "text": text, "behaviour": "greeting"}
+    assert eraser.body("own phrase", body) == {**body, "text": after}
+    stored = json.dumps(body, separators=(",", ":"))
+    data = eraser.overwrite(f"\x00{stored}\x07".encode())
+    assert len(data) == len(stored) + 2 and data.startswith(b'\x00{"activity":"bingo","teacher"')
+    assert (text in data.decode()) is (text == after)
+    assert not any(name in data.split(b'"text"')[1] for name in (b"rosa", b"frau weber"))
 
 
 def test_a_name_that_stays_as_that_of_staff_is_counted() -> None:

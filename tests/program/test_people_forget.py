@@ -18,6 +18,7 @@ import pytest
 
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.own_phrases import OwnPhrases, own_phrases
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.pages.page import document
 from tests.support.append_body import append_body
@@ -130,6 +131,24 @@ def test_a_misspelt_name_is_erased_from_copies_of_the_log(tangy: Tangy, tmp_path
     assert left.count(b"go to user 1") == 3 and left.count(b"greet everyone") == 3
     with closing(sqlite3.connect(folder / "salvage-x" / "log")) as db:
         assert db.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+
+
+def test_a_teachers_phrase_with_the_name_is_forgotten_and_the_others_work_on(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    with closing(Workspace(tmp_path)) as workspace:
+        workspace.store.rename("user2", "Rosa Weber")
+        own = OwnPhrases(workspace.store, workspace.activity, workspace.teacher)
+        own.note("rosa starts it all", "greeting", kept=True)
+        own.note("let it all begin", "greeting", kept=True)
+    shutil.copy(tmp_path / "tangy.db", tmp_path / "tangy.db.damaged-20260101T000000Z")
+    assert bytes_of(tmp_path).count(b"rosa starts") == 2
+    done = tangy("people", "forget", "Rosa Weber", "--yes", "--json", "--data", tmp_path)
+    assert (done.returncode, json.loads(done.stdout)["events_changed"]) == (0, 1)
+    assert b"rosa" not in bytes_of(tmp_path).lower()
+    with closing(Workspace(tmp_path)) as workspace:
+        kept = own_phrases(workspace.store, workspace.activity.name, workspace.teacher)
+    assert kept == {"let it all begin": "greeting"}
 
 
 def test_forgetting_beside_a_writer_changes_nothing(tangy: Tangy, data: Path) -> None:
