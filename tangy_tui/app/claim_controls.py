@@ -55,7 +55,7 @@ class ClaimControls:
         self._winning: tuple[ClaimNow, ...] = ()
         """The claims of this game that win, each until the winner is visited."""
         self._untold: list[int] = []
-        """Cards that do not win, of which the group hears after the celebration."""
+        """Cards that do not win, of which the group hears after the celebration, or together."""
         self._unchecked: list[ClaimCard] = []
         """The claims that were made before an interruption, and are still to be checked."""
         self._late: list[StaffNote] = []
@@ -96,7 +96,8 @@ class ClaimControls:
         told: list[Event] = []
         world = self.world
         while world is not None and self._unchecked:
-            for one in self._claim(world, self._unchecked.pop(0)):
+            claim = self._unchecked.pop(0)
+            for one in self._claim(world, claim, more=bool(self._unchecked)):
                 if isinstance(one, StaffNote):
                     self._late.append(one)
                 else:
@@ -253,8 +254,11 @@ class ClaimControls:
         # The group is told of no win that Tangy cannot celebrate.
         return StaffNote("whose card", str(card)) if world.wins(card) else None
 
-    def _claim(self, world: PlannedGame, claim: ClaimCard) -> list[Result]:
-        """Check a card against all calls, and tell the group the result."""
+    def _claim(self, world: PlannedGame, claim: ClaimCard, *, more: bool = False) -> list[Result]:
+        """Check a card against all calls, and tell the group the result.
+
+        If `more` claims are still to be checked, the group hears of those that do not win at once.
+        """
         claim = self.with_card(claim)
         if (refused := self._no_card(claim)) is not None:
             return [refused]
@@ -273,10 +277,18 @@ class ClaimControls:
         claimed = ClaimNow(card, holder, kind, world.seconds, calls, game, later=later)
         self._keep(claimed)
         people = (holder,) if holder else ()
+        wrong = [one for one in self._untold if one != card and not world.wins(one)] + [card]
         if later:  # "let us play on" would deny that somebody has won
-            self._untold = [one for one in self._untold if one != card] + [card]
+            self._untold = wrong
             return [StaffNote(kind, str(card), people=people)]
-        said = words.format(card=card, pattern=pattern.label if pattern else "")
+        if kind == "claim wrong" and more:
+            self._untold = wrong
+            return [StaffNote("claim with others", str(card), people=people)]
+        label = pattern.label if pattern else ""
+        if kind == "claim wrong":
+            self._untold, said = [], joined(words, wrong, label)
+        else:
+            said = words.format(card=card, pattern=label)
         world.announce(said)
         told: list[Result] = [StaffNote(kind, str(card), said, people)]
         if kind != "claim right":

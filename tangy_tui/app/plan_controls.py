@@ -61,7 +61,12 @@ class GamePlanControls(ClaimControls):
             case TakeBackCall(label):
                 return self._take_back(world, label)
             case ClaimCard():
-                return self._claim(world, command)
+                self._early.pop(id(command), None)
+                early = [one for one in self._early.values() if isinstance(one, ClaimCard)]
+                cards = {self.with_card(one).card for one in early if self.judged(one) is not None}
+                return self._claim(
+                    world, command, more=bool(cards - {self.with_card(command).card})
+                )
             case ChoosePatterns(names):
                 return self._choose(world, names)
             case LetWin(several, visits):

@@ -21,6 +21,7 @@ DoneKind = Literal[
     "claim right",
     "claim late",
     "claim wrong",
+    "claim with others",
     "claims told",
     "card given",
     "patterns",

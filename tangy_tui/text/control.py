@@ -167,6 +167,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "claim wrong":
             then = f"Tangy tells everybody: {noted.words}" if noted.words else CELEBRATES_FIRST
             return f"{_whose_card(noted, name)} does not win yet. {then}"
+        case "claim with others":
+            return f"{_whose_card(noted, name)} does not win yet. {CHECKS_OTHERS}"
         case "claims told":
             return f"Tangy tells everybody: {noted.words}"
         case "card given":
@@ -324,6 +326,7 @@ BECAUSE_DETAIL = "It is {}. After this, {{autonomy}} turns the questions off."
 
 
 CELEBRATES_FIRST = "Tangy celebrates the winner first."
+CHECKS_OTHERS = "Tangy checks the other cards, then tells everybody."
 """Why Tangy does not tell everybody that a card does not win."""
 
 

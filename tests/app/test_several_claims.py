@@ -11,7 +11,7 @@ from tangy_tui.app.claim_controls import joined
 from tangy_tui.app.game_commands import ClaimCard
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.text.control import CELEBRATES_FIRST, noted_words
+from tangy_tui.text.control import CELEBRATES_FIRST, CHECKS_OTHERS, noted_words
 from tangy_tui.ui.screens.play_view import ViewSource, news_line
 from tests.app.test_interruption import Robot
 
@@ -91,6 +91,38 @@ def test_the_group_hears_of_wrong_cards_after_the_celebration(
     assert noted_words(told, str) == f"Tangy tells everybody: {said}"
     robot.control.plan.tell_left()
     assert announced == [said]
+
+
+def test_the_group_hears_once_of_claims_that_wait_together(
+    robot: Robot, announced: list[str]
+) -> None:
+    cards = {19: "user1", 18: "user3", 20: "user4"}
+    claims = [ClaimCard(card, person) for card, person in cards.items()]
+    for one in claims:
+        robot.control.plan.say_early(one)  # while Tangy carries out its step
+    notes = [robot.control.plan.do(one)[0] for one in claims]
+    said = "".join(f"Card {card} does not win yet. " for card in cards) + "Let us play on."
+    assert announced == [said]
+    told = [noted_words(one, str) for one in notes if isinstance(one, StaffNote)]
+    assert told == [
+        f"Card 19 (user1) does not win yet. {CHECKS_OTHERS}",
+        f"Card 18 (user3) does not win yet. {CHECKS_OTHERS}",
+        f"Card 20 (user4) does not win yet. Tangy tells everybody: {said}",
+    ]
+    robot.control.next()
+    assert announced == [said]
+
+
+def test_a_claim_that_waits_in_vain_holds_no_announcement(
+    robot: Robot, announced: list[str]
+) -> None:
+    plan = robot.control.plan
+    for one in (ClaimCard(19, "user1"), ClaimCard(18, "user3")):
+        plan.say_early(one)
+    plan.do(ClaimCard(20, "user4"))
+    assert announced == []
+    robot.control.next()  # the others were never carried out
+    assert announced == ["Card 20 does not win yet. Let us play on."]
 
 
 def test_staff_read_what_the_group_hears_late_before_the_next_step(
