@@ -102,6 +102,12 @@ _NO_PERSON = re.compile(
     r"|nobody|i|we|user|person|place|table)$|(?:the|a|your|my|this|that|with|at|in|out|to) )"
 )
 """What names nobody."""
+_END = re.compile(
+    rf"{_POLITE}(?:let us |let['\u2019]s |we )?(?:end|finish|leave|close)"
+    r"(?: (?:the|this|our) (?:game|quiz|round|session|(?P<title>.+?))| game)"
+    r"(?:,? (?:please|now|here|today|for today))*",
+)
+"""Ways to end the game."""
 _DIAL = re.compile(r"autonomy (\w+)")
 
 
@@ -178,6 +184,20 @@ def read_help(text: str, find_person: Callable[[str], str]) -> AskFor | None:
     return None
 
 
+def read_end(text: str, game: Collection[str] = ()) -> EndGame | None:
+    """Parse plain words that end the game: "end the game", "please finish the bingo now".
+
+    While Tangy asks what to do next, such words are the answer instead: it says goodbye.
+
+    Args:
+        text: what was typed.
+        game: the words of the activity's title.
+    """
+    ends = _END.fullmatch(" ".join(text.split()).strip(" .!?").casefold())
+    named = ends is not None and set((ends["title"] or "").split()) <= set(game)
+    return EndGame() if named else None
+
+
 def read_telling(line: str, find_person: Callable[[str], str]) -> Tell:
     """Parse a report about a person: "NAME: words", or words about the person the game waits for.
 
@@ -215,13 +235,16 @@ def command_reader(
     Args:
         activity: the activity.
         find_person: returns the id of a person by name or id.
-        asks: returns whether staff say what Tangy does next; then "go to Rosa" is no command.
+        asks: returns whether staff say what Tangy does next; then "go to Rosa" and "end the game"
+            are no commands.
     """
     title = frozenset(activity.title.casefold().split())
 
     def read(text: str) -> GameCommand | None:
         command = read_command(text, find_person=find_person, game=title, rules=activity.rules)
-        return read_help(text, find_person) if command is None and not asks() else command
+        if command is not None or asks():
+            return command
+        return read_end(text, title) or read_help(text, find_person)
 
     return read
 

@@ -13,7 +13,13 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import COMMAND_WORDS
-from tangy_tui.app.command_grammar import FIXED, read_answer, read_command, read_help
+from tangy_tui.app.command_grammar import (
+    FIXED,
+    command_reader,
+    read_answer,
+    read_command,
+    read_help,
+)
 from tangy_tui.app.game_commands import (
     AUTONOMY,
     DIRECTIONS,
@@ -23,6 +29,7 @@ from tangy_tui.app.game_commands import (
     ComesIn,
     Confirm,
     Drive,
+    EndGame,
     GameCommand,
     GoesAway,
     HasCard,
@@ -113,6 +120,23 @@ def read(text: str) -> GameCommand | None:
 )
 def test_words_are_read_as_their_command(text: str, command: GameCommand | None) -> None:
     assert read(text) == command
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "end the game", "End the game, please.", "please finish the game", "let's end our bingo",
+        "let us finish the game here", "end game", "can you end the game for today?",
+    ],
+)  # fmt: skip
+def test_plain_words_end_the_game_unless_tangy_asks_what_to_do(text: str) -> None:
+    assert command_reader(BINGO, find)(text) == EndGame()
+    assert command_reader(BINGO, find, lambda: True)(text) is None
+
+
+@pytest.mark.parametrize("text", ["don't end the game yet", "end the visit", "end the trivia"])
+def test_other_words_about_an_end_are_no_command(text: str) -> None:
+    assert command_reader(BINGO, find)(text) is None
 
 
 @pytest.mark.parametrize("words", sorted(FIXED))
