@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import STILL, Twist
+from tangy_hw.navigation.leg_detection import TORSO
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import Floats, lengths
@@ -33,6 +34,7 @@ STEP = 0.1  # seconds between the checked moments
 NEARER = 0.005  # metres by which driving must be worse than stopping, for standing people
 KEPT = 0.22  # metres from a standing person below which driving may not be worse at all
 KEPT_END = 0.2  # the same from a return: its track tells how far the person reaches
+PAIR = 0.01  # m of the radius by which a track of two legs is known; one leg tells less exactly
 FURTHER, WALKS = 0.01, 0.25  # m by which driving must be better, for walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
 FRESH = 0.5  # seconds for which a new track is assumed to approach fast
@@ -87,9 +89,10 @@ class _Bodies(NamedTuple):
 
     If both driving and stopping come too near, driving must gain `leeway` m over stopping: slightly
     negative for standing people, positive for walkers. A negative one only holds beyond `kept` m:
-    else the robot would creep up to a person, command by command. Walkers may also turn, and
-    standing people set off, and approach at `turned` m/s; 0 if not. The velocity of `fresh` bodies
-    is not known yet.
+    else the robot would creep up to a person, command by command. `held` is the same for commands
+    so slow that the required separations would let the robot nearer; 0: they decide. Walkers may
+    also turn, and standing people set off, and approach at `turned` m/s; 0 if not. The velocity of
+    `fresh` bodies is not known yet.
     """
 
     at: Floats
@@ -99,6 +102,7 @@ class _Bodies(NamedTuple):
     leeway: Floats
     turned: Floats
     kept: Floats
+    held: Floats
     fresh: Floats
 
 
@@ -117,15 +121,17 @@ def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
             FURTHER if max(one.speed, one.pace) > WALKS else -NEARER,
             _turned(one, limits),
             one.half + KEPT,
+            one.half + KEPT if abs(one.half - TORSO) < PAIR else 0.0,
             one.age < FRESH,
         )
         for one in tracks
     ]
     apart = END + limits.margin
     rows += [
-        (x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0, KEPT_END, False) for x, y in ends
+        (x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0, KEPT_END, 0.0, False)
+        for x, y in ends
     ]
-    table = np.array(rows, dtype=np.float64).reshape(-1, 10)
+    table = np.array(rows, dtype=np.float64).reshape(-1, 11)
     return _Bodies(table[:, :2], table[:, 2:4], *table[:, 4:].T)
 
 
@@ -174,8 +180,8 @@ def _stays_clear(
     seen = people - robot[:, None]
     driving = _off(seen, turned, limits)
     standing = _off(people, np.zeros(len(people)), limits)
-    near = driving < apart
     walk = bodies.leeway > 0.0
+    near = driving < np.maximum(apart, np.where(walk, 0.0, bodies.held))
     least = standing + bodies.leeway
     least = np.where(walk, least, np.minimum(standing, np.maximum(least, bodies.kept)))
     if (near & (driving < least)).any():
