@@ -204,4 +204,6 @@ class Inquiries:
         if self._game.world.played_in == SIMULATED:
             return ""
         view, time = self._controller.view(), self._controller.time
-        return f"{time_words(view.seconds, time.ends, view.paused, time.clock())}."
+        stopped = self._controller.stopped
+        told = time_words(view.seconds, time.ends, view.paused, time.clock(), stopped=stopped)
+        return f"{told}."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import datetime
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from tangy_profiles.game_world import SIMULATED
@@ -44,6 +45,7 @@ def time_words(
     paused: float | None = None,
     now: datetime | None = None,
     *,
+    stopped: bool = False,
     until: bool = True,
     lasted: bool = True,
 ) -> str:
@@ -54,12 +56,13 @@ def time_words(
         ends: when the planned time is over; None: no limit.
         paused: how long the pause has lasted (s); None: the game is not paused.
         now: the local time of day; None: the game is not played in the time of the home.
+        stopped: whether the robot was stopped, so that the game stands for this reason.
         until: whether to tell the time of day at which the planned time is over.
         lasted: whether to tell how long the game has lasted.
     """
     told = [f"{clock_words(seconds)} so far"] if lasted else []
     if paused is not None and paused >= 1:
-        told.append(f"paused {clock_words(paused)}")
+        told.append(f"{'stopped' if stopped else 'paused'} {clock_words(paused)}")
     if ends is not None and now is not None:
         left = (ends - now).total_seconds()
         told.append(f"{clock_words(left)} left" if left > 0 else "time is up")
@@ -71,14 +74,16 @@ def time_words(
 
 
 def time_facts(
-    seconds: float, ends: datetime | None, paused: float | None, now: datetime | None
+    seconds: float,
+    ends: datetime | None,
+    paused: float | None,
+    now: datetime | None,
+    *,
+    stopped: bool = False,
 ) -> Fact:
     """Tell the same with the time of day, and in two shorter ways for less room."""
-    told = (
-        time_words(seconds, ends, paused, now),
-        time_words(seconds, ends, paused, now, until=False),
-        time_words(seconds, ends, paused, now, until=False, lasted=ends is None or now is None),
-    )
+    words = partial(time_words, seconds, ends, paused, now, stopped=stopped)
+    told = (words(), words(until=False), words(until=False, lasted=ends is None or now is None))
     return told if paused is not None else told[:2]
 
 
@@ -118,7 +123,8 @@ def planned_words(ends: str, minutes: str) -> str:
 def time_lines(control: GameController) -> list[str]:
     """Answer how long the session has lasted, and when it ends."""
     view, world = control.view(), control.supervision.world
-    game = f"This game: {time_words(view.seconds, None, view.paused)}."
+    lasted = time_words(view.seconds, None, view.paused, stopped=control.stopped)
+    game = f"This game: {lasted}."
     if world.played_in == SIMULATED:
         return [game, SIMULATED_TIME]
     if (time := control.time.now) is None:

@@ -135,7 +135,8 @@ def view_lines(view: GameView | None, activity: Activity | None, name: Name) -> 
 def now_lines(view: GameView, activity: Activity | None, name: Name) -> list[str]:
     """Describe the time, who waits for help, the calls, and what staff have chosen."""
     waits, called = waiting_words(view, name), called_words(view, activity)
-    time = time_words(view.seconds, _ends(view), view.paused, _now(view))
+    stopped = view.phase == "stopped"
+    time = time_words(view.seconds, _ends(view), view.paused, _now(view), stopped=stopped)
     told = f"{time}{f'. {waits}' if waits else ''}."
     chosen = ", ".join(filter(None, reversed(_chosen(view))))
     return [*filter(None, (told, called)), f"{chosen}."]
@@ -155,7 +156,9 @@ def facts(view: GameView) -> list[Fact]:
     """Return the facts beside the call."""
     called = len(view.scene.called)
     return [
-        time_facts(view.seconds, _ends(view), view.paused, _now(view)),
+        time_facts(
+            view.seconds, _ends(view), view.paused, _now(view), stopped=view.phase == "stopped"
+        ),
         f"{called} called" if called else "",
         *_chosen(view),
     ]

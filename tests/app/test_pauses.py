@@ -27,7 +27,8 @@ from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.pauses import PauseClock, PauseTotal
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import read_session
-from tangy_tui.text.planned_time import time_words
+from tangy_tui.text.planned_time import time_lines, time_words
+from tangy_tui.text.watching import facts
 from tests.app.test_interruption import Robot
 
 
@@ -188,6 +189,22 @@ def test_onlookers_and_lines_get_the_time_of_the_pause(workspace: Workspace) -> 
     assert view is not None and view.paused == 200
     (line,) = Inquiries(robot.control, workspace.name, None, str).lines("where") or []
     assert time_words(view.seconds, None, 200) in line
+
+
+def test_a_stop_is_told_as_one_and_not_as_a_pause(workspace: Workspace) -> None:
+    robot = Robot(workspace)
+    robot.next(1)
+    robot.control.apply(StopRobot())
+    robot.link.time += 7.5
+    (line,) = Inquiries(robot.control, workspace.name, None, str).lines("where") or []
+    assert "stopped 0:07" in line and "paused" not in line
+    assert "stopped 0:07" in time_lines(robot.control)[0]
+    view = view_of(robot.control)
+    assert view is not None and "stopped 0:07" in str(facts(view)[0])
+    robot.control.apply(GoOn())
+    robot.control.apply(Pause())
+    robot.link.time += 7.5
+    assert "paused 0:07" in time_lines(robot.control)[0]
 
 
 @pytest.mark.parametrize(

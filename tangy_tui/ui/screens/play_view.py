@@ -118,7 +118,7 @@ def _facts(view: StaffView, shown: ViewSource, *, last: bool) -> list[Fact]:
     world, label = shown.world, shown.world.activity.deck.label
     planned = shown.control.time
     now = None if world.played_in == SIMULATED else planned.clock()  # simulated time runs otherwise
-    time = time_facts(view.seconds, planned.ends, view.paused, now)
+    time = time_facts(view.seconds, planned.ends, view.paused, now, stopped=shown.control.stopped)
     before = "  ".join(label(number) for number in view.called[-2 : -2 - BEFORE : -1] if last)
     if not world.activity.deck.columns:  # the activity has no calls
         return [
