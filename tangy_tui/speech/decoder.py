@@ -6,8 +6,9 @@ garbage branch of any phones, which shows how well any phones explain the sound.
 the two scores separates spoken commands from words that merely fit best. Where the words are no
 whole phrase, apart from fillers, a model of the ways to ask and of talk gives guesses at the
 sentence. A separate stop decoder (`stop_decoder`) runs first; if it is sure, its result is used at
-once. The paper's mode has only the n-gram model of the phrases. pocketsphinx holds the GIL, so this
-runs in a process of its own: see `worker`.
+once. If it finds that the means of other voices fit the sound better, requests are decoded again
+with these means. The paper's mode has only the n-gram model of the phrases. pocketsphinx holds the
+GIL, so this runs in a process of its own: see `worker`.
 """
 
 from __future__ import annotations
@@ -15,10 +16,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from tangy_tui.language.words import bare
-from tangy_tui.speech.evidence import RATE, AcousticEvidence, DecoderVocabulary, Expecting
+from tangy_tui.speech.evidence import (
+    RATE,
+    AcousticEvidence,
+    DecoderVocabulary,
+    Expecting,
+    OtherHearing,
+)
 from tangy_tui.speech.forked_worker import ForkedWorker
 from tangy_tui.speech.language import (
     EVERYDAY,
@@ -29,6 +36,7 @@ from tangy_tui.speech.language import (
     words_of,
 )
 from tangy_tui.speech.noise_reduction import cleared, surrounded
+from tangy_tui.speech.other_voices import moved_means
 from tangy_tui.speech.pocketsphinx_search import (
     NO_PATH,
     add_model,
@@ -40,6 +48,7 @@ from tangy_tui.speech.stop_decoder import StopDecoder
 
 SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
 MODEL = "en-us/"
+SENTENCES = "sentences"  # the search for guesses
 FEW = 1_500  # everyday words among sentences and stops
 AMONG_SENTENCES = 0.05  # their share
 UNKNOWN_MARGIN = -0.5  # the margin of most speech that is no command
@@ -118,6 +127,35 @@ class _Streaming:
             self._open = False
 
 
+class _RequestSearches:
+    """Words by an open n-gram model, and a grammar with a garbage branch."""
+
+    def __init__(self, texts: _RequestTexts, means: bytes | None = None) -> None:
+        self.words = make_search(texts.words, bestpath=True, active=1500, means=means)
+        self._grammar = make_search(texts.own_words, bestpath=False, active=1000, means=means)
+        for name, model in texts.models.items():
+            add_model(self.words, name, model)
+        for name, rules in texts.grammars.items():
+            self._grammar.add_jsgf_string(name, rules)
+
+    def by_words(self, pcm: bytes, expecting: Expecting) -> tuple[str, float]:
+        """Return the likeliest words, and their score."""
+        return best_path(self.words, pcm, expecting)[:2]
+
+    def by_grammar(self, pcm: bytes, expecting: Expecting) -> tuple[str, float]:
+        """Return the phrase or any phones, and their score."""
+        return best_path(self._grammar, pcm, expecting)[:2]
+
+
+class _RequestTexts(NamedTuple):
+    """Dictionaries and models of the searches for requests."""
+
+    words: str
+    own_words: str
+    models: dict[str, str]
+    grammars: dict[str, str]
+
+
 class TwoDecoders(_Streaming):
     """The usual mode: words by an open n-gram model, and a grammar with a garbage branch."""
 
@@ -137,21 +175,24 @@ class TwoDecoders(_Streaming):
         share = weight / (1 + weight)
         asked = [text for text in wanted.sentences if known.keys() >= set(text.split())]
         said_words = (*open_words, *words_of(asked), *own)
-        self._search = make_search(
-            dictionary({word: known[word] for word in said_words}), bestpath=True, active=1500
+        texts = _RequestTexts(
+            dictionary({word: known[word] for word in said_words}),
+            dictionary(own, phones=True),
+            {},
+            {},
         )
-        self._grammar = make_search(dictionary(own, phones=True), bestpath=False, active=1000)
         for name, said in (("commands", phrases), ("answers", answers)):
             if said:
-                add_model(self._search, name, open_model(said, open_words, share))
-                self._grammar.add_jsgf_string(name, grammar(said, weight))
+                texts.models[name] = open_model(said, open_words, share)
+                texts.grammars[name] = grammar(said, weight)
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
         self._bare = {bare(tuple(text.split())) for text in phrases} - {()}
         few = dict(list(open_words.items())[:FEW])
         self._guesses = bool(asked)
         if asked:
-            sentences = open_model((*phrases, *asked), few, AMONG_SENTENCES)
-            add_model(self._search, "sentences", sentences)
+            texts.models[SENTENCES] = open_model((*phrases, *asked), few, AMONG_SENTENCES)
+        self._usual, self._other = _RequestSearches(texts), _RequestSearches(texts, moved_means())
+        self._search = self._usual.words
         self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
         self._beside = ForkedWorker(self._by_words)
         self._beside_stops = ForkedWorker(self._stops.hear)
@@ -163,26 +204,39 @@ class TwoDecoders(_Streaming):
             return AcousticEvidence(seconds=seconds)
         self._beside_stops.ask(pcm)
         pcm = cleared(surrounded(pcm))
-        self._beside.ask((pcm, expecting))
-        stop, sure = self._beside_stops.answer()  # first, while it has a core to itself
+        self._beside.ask((pcm, expecting, False))
+        stop, sure, unlike = self._beside_stops.answer()  # first, while it has a core to itself
         if sure:
             return AcousticEvidence(stop, "", UNKNOWN_MARGIN, 1.0, seconds, stop)
-        phrase, garbage, _ = best_path(self._grammar, pcm, expecting)
+        heard = self._both(self._usual, pcm, expecting)
+        other = None
+        if unlike and expecting == "commands":
+            self._beside.ask((pcm, expecting, True))
+            other = OtherHearing(*self._both(self._other, pcm, expecting))
+        words, phrase, margin, guesses = heard
+        return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop, guesses, other)
+
+    def _both(
+        self, searches: _RequestSearches, pcm: bytes, expecting: Expecting
+    ) -> tuple[str, str, float, tuple[str, ...]]:
+        """Return the words, phrase, margin and guesses of searches; those for words were asked."""
+        phrase, garbage = searches.by_grammar(pcm, expecting)
         words, score, guesses = self._beside.answer()
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or an unfinished phrase
-        return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop, guesses)
+        return words, phrase, margin, guesses
 
-    def _by_words(self, asked: tuple[bytes, Expecting]) -> tuple[str, float, tuple[str, ...]]:
-        pcm, expecting = asked
+    def _by_words(self, asked: tuple[bytes, Expecting, bool]) -> tuple[str, float, tuple[str, ...]]:
+        pcm, expecting, unlike = asked
         self._end()  # not earlier: it takes .06 s, and a child's own search is not open
-        words, score, _ = best_path(self._search, pcm, expecting)
+        searches = self._other if unlike else self._usual
+        words, score = searches.by_words(pcm, expecting)
         # fillers such as "please" change nothing
         phrase = not words or bare(tuple(words.split())) in self._bare
         if phrase or expecting != "commands" or not self._guesses:
             return words, score, ()
-        guesses, _ = likeliest(self._search, pcm, "sentences")
+        guesses, _ = likeliest(searches.words, pcm, SENTENCES)
         return words, score, guesses
 
     def close(self) -> None:

@@ -53,6 +53,16 @@ class DecoderVocabulary:
 
 
 @dataclass(frozen=True, slots=True)
+class OtherHearing:
+    """What the means of other voices heard of an utterance; see `AcousticEvidence`."""
+
+    words: str
+    phrase: str
+    margin: float
+    guesses: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class AcousticEvidence:
     """The decoder's evidence about an utterance.
 
@@ -60,7 +70,8 @@ class AcousticEvidence:
     the grammar, or empty; `margin` is log P(sound, words) - log P(sound, grammar or any phones) per
     frame; `confidence` is that of the paper's mode, else 1; `seconds` is the length. `stop` is the
     sentence found by the stop decoder, or empty. `guesses` are the likeliest sentences, best first;
-    none if a phrase was heard, or only words are known.
+    none if a phrase was heard, or only words are known. `other` is what the means of other voices
+    heard; None if the usual ones fit better.
     """
 
     words: str = ""
@@ -70,3 +81,4 @@ class AcousticEvidence:
     seconds: float = 0.0
     stop: str = ""
     guesses: tuple[str, ...] = ()
+    other: OtherHearing | None = None

@@ -39,10 +39,14 @@ Known = Mapping[str, Sequence[str]]
 
 
 class HeardStop(NamedTuple):
-    """The sentence that stops the robot ("" if none), and whether it is certain."""
+    """The sentence that stops the robot ("" if none), and whether it is certain.
+
+    `unlike` says that the means of other voices fit the sound better than the usual ones.
+    """
 
     sentence: str = ""
     sure: bool = False
+    unlike: bool = False
 
 
 class StopDecoder:
@@ -93,7 +97,7 @@ class StopDecoder:
         if heard.sure or score >= FITS:
             return heard
         others, other_score = likeliest(self._other, pcm, "all")
-        return self._judged(others) if other_score > score else heard
+        return self._judged(others)._replace(unlike=True) if other_score > score else heard
 
     def _judged(self, guesses: tuple[str, ...]) -> HeardStop:
         """Return the stop among the likeliest sentences, best first."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from difflib import SequenceMatcher
 from types import MappingProxyType
 
@@ -119,7 +119,37 @@ def sounds_of(phrasebook: Phrasebook) -> tuple[object, ...]:
 def understand(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings
 ) -> Say | StopCommand:
-    """Return the meaning of an utterance: one or more commands, none, or a stop."""
+    """Return the meaning of an utterance: one or more commands, none, or a stop.
+
+    If the means of other voices fit better, their words count. They are sure only if the usual ones
+    are sure of the same command, and stop the robot only if another search heard a stop, too.
+    """
+    said = _understood(evidence, phrasebook, settings)
+    if evidence.other is None:
+        return said
+    heard = replace(evidence, **asdict(evidence.other), other=None)
+    other = _understood(heard, phrasebook, settings)
+    if isinstance(other, StopCommand) and (evidence.stop or isinstance(said, StopCommand)):
+        return other
+    if isinstance(other, StopCommand) or (other.commands is None and said != other):
+        return Say(other.text, 0.0, ())
+    return replace(other, sure=other.sure and _is_sure_of(said, other))
+
+
+def _is_sure_of(said: Say | StopCommand, other: Say) -> bool:
+    """Return whether what was said is sure, and the same as the first of other commands."""
+    if not isinstance(said, Say) or not said.sure:
+        return False
+    first, second = (one.commands[:1] if one.commands else () for one in (said, other))
+    return [(c.behaviour, c.arguments) for c in first] == [
+        (c.behaviour, c.arguments) for c in second
+    ]
+
+
+def _understood(
+    evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings
+) -> Say | StopCommand:
+    """Return the meaning of an utterance by the words of one search."""
     if settings.mode == "paper":
         if stops(evidence.words, phrasebook.game):
             return StopCommand(evidence.words)

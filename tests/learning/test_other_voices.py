@@ -1,4 +1,4 @@
-"""The stop decoder's second look, with the acoustic model's means of other voices."""
+"""A second look with the acoustic model's means of other voices: stops and requests."""
 
 from __future__ import annotations
 
@@ -15,12 +15,16 @@ from tangy_hw.audio.wav import RATE, read_wav
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.verification import Say, StopCommand
 from tangy_tui.speech import other_voices, pocketsphinx_search, stop_decoder
 from tangy_tui.speech.decoder import make_decoder
-from tangy_tui.speech.evidence import USUAL
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, OtherHearing
 from tangy_tui.speech.other_voices import PHONES, SIZE, STREAMS, moved_means, transformed
 from tangy_tui.speech.stop_decoder import FITS, HeardStop, StopDecoder
-from tangy_tui.speech.understanding import wanted
+from tangy_tui.speech.understanding import understand, wanted
+
+BOOK = Phrasebook(load_activity("bingo"), load_people(4))
+STOPPING = "somebody stop the robot"
 
 BADLY = FITS - 1.0
 FORMANT_STOPS = (
@@ -67,8 +71,51 @@ def test_sound_that_fits_badly_is_heard_with_the_means_that_fit_better(
     monkeypatch: pytest.MonkeyPatch, better: float, stops: bool
 ) -> None:
     heard, used = heard_with(monkeypatch, BADLY, BADLY + better)
-    assert heard == (HeardStop("hey stop", sure=True) if stops else HeardStop())
+    assert heard == (HeardStop("hey stop", sure=True, unlike=True) if stops else HeardStop())
     assert used == ["usual", "other"]
+
+
+def unlike(usual: str, other: str, stop: str = "") -> AcousticEvidence:
+    """Return the evidence of words that both searches hear clearly."""
+    heard = OtherHearing(other, "", 0.5, ())
+    return AcousticEvidence(usual, "", 0.5, 1.0, 1.0, stop, (), heard)
+
+
+@pytest.mark.parametrize(
+    ("usual", "other", "sure"),
+    [
+        ("a bell of choke", "tell a joke", False),
+        ("tell a joke", "tell a joke", True),
+        ("please tell a joke", "tell a joke", True),  # the same command
+        ("call number", "tell a joke", False),
+        ("stop the robot", "tell a joke", False),
+    ],
+)
+def test_requests_of_unlike_voices_are_sure_only_if_both_means_agree(
+    usual: str, other: str, sure: bool
+) -> None:
+    said = understand(unlike(usual, other), BOOK, USUAL)
+    assert isinstance(said, Say)
+    assert [command.behaviour for command in said.commands or ()] == ["joke"]
+    assert said.sure == sure
+
+
+@pytest.mark.parametrize("usual", ["under that", "tell a joke"])
+def test_other_means_alone_do_not_steer(usual: str) -> None:
+    assert understand(unlike(usual, "undo that"), BOOK, USUAL) == Say("undo that", 0.0, ())
+    steered = understand(unlike("undo that", "undo that"), BOOK, USUAL)
+    assert steered == Say("undo that", 1.0, None)
+
+
+@pytest.mark.parametrize(
+    ("usual", "stop", "stops"),
+    [("some body", "", False), (STOPPING, "", True), ("some body", STOPPING, True)],
+)
+def test_words_of_unlike_voices_stop_only_if_another_search_hears_a_stop(
+    usual: str, stop: str, stops: bool
+) -> None:
+    said = understand(unlike(usual, STOPPING, stop), BOOK, USUAL)
+    assert said == (StopCommand(STOPPING) if stops else Say(STOPPING, 0.0, ()))
 
 
 def test_each_phone_and_stream_has_its_own_transform() -> None:

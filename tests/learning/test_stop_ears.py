@@ -19,7 +19,7 @@ from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import decoder as speech_decoder
 from tangy_tui.speech import pocketsphinx_search, stop_decoder
-from tangy_tui.speech.evidence import USUAL, AcousticEvidence, DecoderVocabulary
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, DecoderVocabulary, Expecting
 from tangy_tui.speech.stop_decoder import HeardStop, StopDecoder
 from tangy_tui.speech.understanding import answer, commanded, replied, understand, wanted
 
@@ -172,17 +172,22 @@ class TwoAnswers:
 
     found = HeardStop()
     words = ""
+    other_words = ""
+    means = False
     asked: ClassVar[list[str]] = []
 
     def __init__(self, work: Callable[[object], object]) -> None:
         self.name = work.__name__
 
     def ask(self, asked: object) -> None:
-        """Take a question."""
+        """Take a question; those for words say whether the means of other voices are meant."""
+        self.means = isinstance(asked, tuple) and asked[-1]
 
     def answer(self) -> object:
         self.asked.append(self.name)
-        return self.found if self.name == "hear" else (self.words, -2.0, ())
+        if self.name == "hear":
+            return self.found
+        return (self.other_words if self.means else self.words, -2.0, ())
 
     def close(self) -> None:
         """Do nothing, as nothing was started."""
@@ -204,3 +209,21 @@ def test_only_an_uncertain_stop_waits_for_the_words(
     assert evidence.stop == "hey stop"
     assert evidence.words == ("hey stop" if sure else words)
     assert len(TwoAnswers.asked) == (1 if sure else 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("unlike", "expecting", "other"),
+    [(True, "commands", "call number"), (False, "commands", None), (True, "answers", None)],
+)
+def test_requests_of_unlike_voices_are_decoded_again(
+    monkeypatch: pytest.MonkeyPatch, unlike: bool, expecting: Expecting, other: str | None
+) -> None:
+    monkeypatch.setattr(speech_decoder, "ForkedWorker", TwoAnswers)
+    monkeypatch.setattr(TwoAnswers, "found", HeardStop(unlike=unlike))
+    monkeypatch.setattr(TwoAnswers, "words", "cool lumber")
+    monkeypatch.setattr(TwoAnswers, "other_words", "call number")
+    decoder = speech_decoder.make_decoder(DecoderVocabulary(("call number",), ("yes",)))
+    evidence = decoder.decode(bytes(2 * RATE), expecting)
+    assert evidence.words == "cool lumber"
+    assert (evidence.other and evidence.other.words) == other
