@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.time_grammar import asks_time
 
 Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "patterns"]
 """Questions about the program or the game; they change nothing."""
@@ -102,18 +103,6 @@ def read_inquiry(text: str) -> Inquiry | None:
     return "why" if _WHY.fullmatch(words) or otherwise else None
 
 
-def asks_who_waits(text: str) -> bool:
-    """Return whether words ask who waits for a visit."""
-    words = " ".join(text.replace("\u2019", "'").split()).casefold()
-    return _WHO_WAITS.fullmatch(words.strip(" ?.!,")) is not None
-
-
-def asks_who_won(text: str) -> bool:
-    """Return whether words ask who has won."""
-    words = " ".join(text.replace("\u2019", "'").split()).casefold()
-    return _WHO_WON.fullmatch(words.strip(" ?.!,")) is not None
-
-
 @dataclass(frozen=True, slots=True)
 class AsksAbout:
     """A question about people, by id: why Tangy goes to them or not, and when their turn is."""
@@ -194,11 +183,10 @@ _SUBJECTS = frozenset(("you", "it", "tangy", "the", "he", "she", "we", "they", "
 LONGEST_NAME = 4  # words
 
 
-def read_question(text: str, find_person: Callable[[str], str]) -> AsksAbout | None:
-    """Parse words as a question about people's turns; None if they are none.
+def read_question(text: str, find_person: Callable[[str], str]) -> Question | None:
+    """Parse words as a question about the time, who waits, who has won, or people's turns.
 
-    Any question counts that begins like one and names somebody, so that no wording has to be
-    learnt.
+    Return None if they are none.
 
     Args:
         text: what was typed.
@@ -208,6 +196,21 @@ def read_question(text: str, find_person: Callable[[str], str]) -> AsksAbout | N
         TangyError: it asks about a person, but nobody is called so; one sentence.
     """
     words = " ".join(text.replace("\u2019", "'").split()).strip(" ?.!,")
+    if asks_time(text):
+        return AsksHowLong()
+    if _WHO_WAITS.fullmatch(words.casefold()):
+        return AsksWhoWaits()
+    if _WHO_WON.fullmatch(words.casefold()):
+        return AsksWhoWon()
+    return _about_people(words, find_person)
+
+
+def _about_people(words: str, find_person: Callable[[str], str]) -> AsksAbout | None:
+    """Parse words as a question about people's turns; raises as `read_question`.
+
+    Any question counts that begins like one and names somebody, so that no wording has to be
+    learnt.
+    """
     plain = _in_full(words.casefold())
     if not _ASKING.fullmatch(plain) or not _ABOUT_TURN.search(plain):
         return None

@@ -7,18 +7,9 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from tangy_tui.app.game_commands import GameCommand
-from tangy_tui.app.inquiry_grammar import (
-    AsksHowLong,
-    AsksWhoWaits,
-    AsksWhoWon,
-    Question,
-    asks_who_waits,
-    asks_who_won,
-    read_question,
-)
+from tangy_tui.app.inquiry_grammar import Question, read_question
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.screen_grammar import Perform, read_screen
-from tangy_tui.app.time_grammar import asks_time
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +50,5 @@ def read_typed(
         return Several(commands)
     if commands:
         return commands[0]
-    if asks_time(typed):
-        return AsksHowLong()
-    if asks_who_waits(typed):
-        return AsksWhoWaits()
-    if asks_who_won(typed):
-        return AsksWhoWon()
     word = read_question(typed, find_person) or read_screen(typed)
     return None if isinstance(word, Perform) and not can(word.action) else word

@@ -11,19 +11,12 @@ from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.game_moment import game_moment
-from tangy_tui.app.inquiry_grammar import (
-    WHO_IS_HERE,
-    WHOSE_CARDS,
-    asks_who_waits,
-    asks_who_won,
-    read_inquiry,
-    read_question,
-)
+from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS, read_inquiry, read_question
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.offered import offered
 from tangy_tui.app.similar_commands import nearest_commands
-from tangy_tui.app.time_grammar import asks_time
 from tangy_tui.monitoring.earlier import EarlierPart
+from tangy_tui.text.answers import answer_to
 from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, person_wait_words, proposal_words
@@ -32,7 +25,7 @@ from tangy_tui.text.faults import HALTED, advice_lines
 from tangy_tui.text.game_help import help_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.messages import NONE_YET
-from tangy_tui.text.planned_time import time_lines, time_words
+from tangy_tui.text.planned_time import time_words
 from tangy_tui.text.questions import NO_QUESTION, answer_help
 from tangy_tui.text.situations import Name, state_words
 from tangy_tui.text.staff_lines import (
@@ -44,14 +37,7 @@ from tangy_tui.text.staff_lines import (
     nothing_to,
 )
 from tangy_tui.text.staff_view import SEVERAL_WIN, person_words, played_words, won_words
-from tangy_tui.text.whose_turn import (
-    IN_DETAIL,
-    about_lines,
-    held_words,
-    waiting_lines,
-    why_now_lines,
-)
-from tangy_tui.text.winners import won_lines
+from tangy_tui.text.whose_turn import IN_DETAIL, held_words, why_now_lines
 
 
 class Inquiries:
@@ -83,18 +69,12 @@ class Inquiries:
 
     def lines(self, text: str) -> list[str] | None:
         """Return the answer to a typed question; None if it is none."""
-        if asks_time(text):
-            return time_lines(self._controller)
-        if asks_who_waits(text):
-            return waiting_lines(game_moment(self._controller), self._name)
-        if asks_who_won(text):
-            return won_lines(self._controller, self._name)
         try:
-            about = read_question(text, self._find_person)
+            question = read_question(text, self._find_person)
         except TangyError as error:
             return [str(error)]
-        if about is not None:
-            return about_lines(self._controller, about, self._name)
+        if question is not None:
+            return answer_to(question, self._controller, self._name).lines
         word = text.casefold()
         match read_inquiry(word):
             case "help" | "phrases":

@@ -8,7 +8,7 @@ from tangy_profiles.cards import winning_state
 from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.game_commands import ChoosePatterns, EndGame
 from tangy_tui.app.game_view import view_of
-from tangy_tui.app.inquiry_grammar import AsksWhoWon, asks_who_won
+from tangy_tui.app.inquiry_grammar import AsksWhoWon, read_question
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.app.typed_line import read_typed
 from tangy_tui.console.inquiries import Inquiries
@@ -101,13 +101,12 @@ ASKED = (
 
 @pytest.mark.parametrize("words", ASKED)
 def test_questions_about_who_has_won_are_understood(words: str) -> None:
-    assert asks_who_won(words)
     assert read_typed(words, lambda line: None, str, lambda action: True) == AsksWhoWon()
 
 
 @pytest.mark.parametrize("words", ["who waits", "several winners", "who is next", "who has a line"])
 def test_other_words_do_not_ask_who_has_won(words: str) -> None:
-    assert not asks_who_won(words)
+    assert read_question(words, str) != AsksWhoWon()
 
 
 def test_the_winners_are_told_with_pattern_card_and_call(planned: Planned) -> None:

@@ -7,21 +7,14 @@ from typing import Any
 from textual.screen import Screen
 
 from tangy_profiles.game_world import SIMULATED
-from tangy_tui.app.game_moment import game_moment
-from tangy_tui.app.inquiry_grammar import AsksHowLong, AsksWhoWaits, AsksWhoWon, Question
+from tangy_tui.app.inquiry_grammar import Question
+from tangy_tui.text.answers import answer_to
 from tangy_tui.text.decisions import WHY_NOW
 from tangy_tui.text.games import ANOTHER_DETAIL, NOTHING_DECIDED
-from tangy_tui.text.planned_time import HOW_LONG, left_words, time_lines
+from tangy_tui.text.planned_time import left_words
 from tangy_tui.text.register import staff_names
 from tangy_tui.text.times import local_now
-from tangy_tui.text.whose_turn import (
-    WHO_WAITS,
-    WHOSE_TURN,
-    about_lines,
-    waiting_lines,
-    why_now_lines,
-)
-from tangy_tui.text.winners import WHO_WON, won_lines
+from tangy_tui.text.whose_turn import why_now_lines
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.screens.play_panels import PlayPanels
@@ -56,17 +49,8 @@ class PlayAnswers(PlayPanels):
 
     def answer_about(self, about: Question) -> None:
         """Answer a typed question: about turns, who waits, who has won, or how long you play."""
-        if isinstance(about, AsksHowLong):
-            self.app.push_screen(MessageDialog("\n".join(time_lines(self.control)), HOW_LONG))
-            return
-        name = staff_names(self._workspace.name)
-        if isinstance(about, AsksWhoWaits):
-            told, title = waiting_lines(game_moment(self.control), name), WHO_WAITS
-        elif isinstance(about, AsksWhoWon):
-            told, title = won_lines(self.control, name), WHO_WON
-        else:
-            told, title = about_lines(self.control, about, name), WHOSE_TURN
-        self.app.push_screen(MessageDialog("\n".join(told), title))
+        answer = answer_to(about, self.control, staff_names(self._workspace.name))
+        self.app.push_screen(MessageDialog("\n".join(answer.lines), answer.title))
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Explain the step chosen with Enter."""
