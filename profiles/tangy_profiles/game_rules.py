@@ -179,6 +179,7 @@ class Patterns:
     deck: Deck
     left: list[Pattern] = field(default_factory=list)
     present: Pattern | None = None
+    """The current one; None: staff chose none, so it is the activity's own."""
     won: int = 0
     """How many patterns were won before the current one."""
 
@@ -194,12 +195,23 @@ class Patterns:
         return self.deck if self.present is None else self.present.on(self.deck)
 
     @property
+    def current(self) -> Pattern | None:
+        """The pattern to play for; None if the activity has no name for it."""
+        if self.present is not None:
+            return self.present
+        return next((one for one in self.rules.patterns if one.on(self.deck) == self.deck), None)
+
+    @property
+    def label(self) -> str:
+        """The label of the pattern to play for; "" if it has none."""
+        return "" if (current := self.current) is None else current.label
+
+    @property
     def chosen(self) -> list[Pattern]:
         """The pattern to play for and those that follow, if staff chose any."""
-        if self.present is not None:
-            return [self.present, *self.left]
-        usual = [one for one in self.rules.patterns if one.on(self.deck) == self.deck]
-        return [*usual[:1], *self.left] if self.left else []
+        if self.present is None and not self.left:
+            return []
+        return [*filter(None, (self.current,)), *self.left]
 
     def follow_with(self, names: Sequence[str]) -> None:
         """Choose the patterns after the current one."""

@@ -153,12 +153,7 @@ class PlannedGame:
 
     def _with_win(self, person: str) -> tuple[Won, ...]:
         """Return all wins, with one by the present pattern that a person may have made."""
-        rules, present = self.activity.rules, self.patterns.present
-        usual = next(
-            (one for one in rules.patterns if one.on(self.own_deck) == self.own_deck), None
-        )
-        pattern = present or usual
-        label, called = pattern.label if pattern else "", self.called_now
+        label, called = self.patterns.label, self.called_now
         known = any((one.person, one.pattern) == (person, label) for one in self._past_wins)
         if known or person not in self.people:
             return self._past_wins

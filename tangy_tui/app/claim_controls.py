@@ -112,10 +112,10 @@ class ClaimControls:
         world = self.world
         if world is None or not self._untold or self._celebrates(world):
             return False
-        present, wrong = world.patterns.present, world.activity.rules.claim_wrong
+        wrong = world.activity.rules.claim_wrong
         cards = [card for card in self._untold if not world.wins(card)]
         self._untold = []
-        if cards and (said := joined(wrong, cards, present.label if present else "")):
+        if cards and (said := joined(wrong, cards, world.patterns.label)):
             world.announce(said)
             self._late.append(StaffNote("claims told", words=said))
             return True
@@ -262,10 +262,8 @@ class ClaimControls:
         claim = self.with_card(claim)
         if (refused := self._no_card(claim)) is not None:
             return [refused]
-        card, person = claim.card, claim.person
+        card, person, rules = claim.card, claim.person, world.activity.rules
         self._unchecked = [one for one in self._unchecked if one.card != card]
-        rules, present = world.activity.rules, world.patterns.present
-        pattern = present or next(iter(rules.patterns), None)
         holder = person or world.holder(card)
         kind = self._verdict(world, card, holder)
         words = {"claim right": rules.claim_right, "claim late": rules.claim_late}.get(
@@ -284,7 +282,7 @@ class ClaimControls:
         if kind == "claim wrong" and more:
             self._untold = wrong
             return [StaffNote("claim with others", str(card), people=people)]
-        label = pattern.label if pattern else ""
+        label = world.patterns.label
         if kind == "claim wrong":
             self._untold, said = [], joined(words, wrong, label)
         else:

@@ -79,13 +79,11 @@ class GameChanges:
         rules, deck = world.activity.rules, world.activity.deck
         match change.what:
             case "played on":
-                present = world.patterns.present
-                return rules.play_on.format(pattern=present.label if present else "")
+                return rules.play_on.format(pattern=world.patterns.label)
             case "taken back":
                 return rules.taken_back.format(call=deck.label(change.number))
             case "all called" | "nobody won" as what:
-                present = world.patterns.present
                 sentence = rules.all_called if what == "all called" else rules.nobody_won
-                return sentence.format(pattern=present.label if present else "")
+                return sentence.format(pattern=world.patterns.label)
             case _:
                 return ""

@@ -75,7 +75,6 @@ def played_for(replay: GameReplay) -> tuple[PlayedFor, ...]:
     if known is None or not any(one.needs for one in known.behaviours.values()):
         return ()
     rules, deck = known.rules, known.deck
-    usual = next((one.name for one in rules.patterns if one.on(deck) == deck), "")
     try:
         patterns = Patterns.of(rules, deck, replay.game.patterns)
     except TangyError:  # the activity has changed since
@@ -85,8 +84,8 @@ def played_for(replay: GameReplay) -> tuple[PlayedFor, ...]:
     notes, called, claimed = list[Noted](), list[int](), dict[str, int]()
 
     def end() -> None:
-        name = usual if patterns.present is None else patterns.present.name
-        found.append(PlayedFor(name, tuple(winners)))
+        current = patterns.current
+        found.append(PlayedFor("" if current is None else current.name, tuple(winners)))
         winners.clear()
         claimed.clear()
 
