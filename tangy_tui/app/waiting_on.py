@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import BENCH
 from tangy_tui.monitoring.attention import open_at_end
-from tangy_tui.monitoring.games import SESSION_GAP, read_games
+from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.house import last_session
 from tangy_tui.monitoring.replay import Noted, read_replays
 
@@ -32,11 +32,8 @@ def wait_on(store: Store, robot: LiveWorld) -> dict[str, float]:
 
 def _waits(store: Store, robot: LiveWorld) -> dict[str, float]:
     games = last_session(read_games(store))
-    ended = games[-1].ended if games else None
-    if ended is None or games[-1].world != robot.played_in:
-        return {}
-    between = max(0.0, (store.now() - ended).total_seconds())
-    if between > SESSION_GAP:
+    between = games[-1].seconds_before(store.now(), robot.played_in) if games else None
+    if between is None or games[-1].ended is None:
         return {}
     replays = read_replays(store, games, {robot.activity.name: robot.activity}, {})
     noted = (moment.what for replay in replays for moment in replay.moments)

@@ -15,7 +15,6 @@ from tangy_profiles.declared.activity import DeclaredActivity
 from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.past_game import OpenRequests
-from tangy_tui.monitoring.games import SESSION_GAP
 from tangy_tui.monitoring.replay import Done, GameReplay, Noted
 
 
@@ -138,17 +137,15 @@ def _gone_over(last: GameReplay, replay: GameReplay, asked: dict[str, float]) ->
 
     In a game of real people, who asked in vain before it still asks in its first step.
     """
-    game, ended = replay.game, last.game.ended
-    if ended is None or game.world == SIMULATED or game.world != last.game.world:
-        return {}
-    between = (game.at - ended).total_seconds()
-    if between > SESSION_GAP:
+    game = replay.game
+    between = last.game.seconds_before(game.at, game.world)
+    if last.game.ended is None or game.world == SIMULATED or between is None:
         return {}
     asking = set(game.people) - game.away
     if done := replay.done[:1]:
         users = [*done[0].state.users, *done[0].after.users]
         asking = {user.id for user in users if user.request == "AR"}
-    over = last.seconds + max(0.0, between)
+    over = last.seconds + between
     there = asking & set(game.people)
     return {person: since - over for person, since in asked.items() if person in there}
 

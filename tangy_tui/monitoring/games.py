@@ -80,6 +80,14 @@ class Game:
         """Whether it was played to its end."""
         return self.ended is not None and self.stopped is None and not self.due
 
+    def seconds_before(self, at: datetime, world: GameWorld) -> float | None:
+        """Return how long (s) it was over when the next game began in its session.
+
+        None: a game that began at that time in that world is none of its session.
+        """
+        between = (at - (self.ended or self.at)).total_seconds()
+        return None if world != self.world or between > SESSION_GAP else max(0.0, between)
+
     def to_json(self) -> dict[str, Any]:
         """Return the game as `--json` lists it, without its ending in words."""
         return {

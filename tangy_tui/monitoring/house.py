@@ -13,7 +13,7 @@ from tangy_profiles.game_world import GameWorld
 from tangy_profiles.person import folded
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.attention import Attention, attention_by_game
-from tangy_tui.monitoring.games import SESSION_GAP, Game, read_games
+from tangy_tui.monitoring.games import Game, read_games
 from tangy_tui.monitoring.replay import AnsweredRequest, GameReplay, read_replays
 
 SHORT_ROBOT = 6
@@ -184,17 +184,11 @@ def by_month(games: Iterable[tuple[RobotLog, GameReplay]]) -> list[Month]:
     return [Month(year, month, tuple(found)) for (year, month), found in sorted(months.items())]
 
 
-def last_session(games: Sequence[Game], gap: float = SESSION_GAP) -> list[Game]:
-    """Return the last game and the games before it that belong to the same session.
-
-    They were played in the same world, with less than `gap` s between the end of one and the
-    beginning of the next.
-    """
+def last_session(games: Sequence[Game]) -> list[Game]:
+    """Return the last game and the games before it that belong to the same session."""
     session = list(games[-1:])
     for game in reversed(games[:-1]):
-        first = session[0]
-        over = game.ended or game.at
-        if game.world != first.world or (first.at - over).total_seconds() > gap:
+        if game.seconds_before(session[0].at, session[0].world) is None:
             break
         session.insert(0, game)
     return session
