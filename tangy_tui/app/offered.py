@@ -52,9 +52,9 @@ NEEDS: Mapping[type[GameCommand], frozenset[Need]] = {
 """The needs of commands that some games refuse whenever they are given."""
 
 
-def needs_of(command: GameCommand | None) -> frozenset[Need]:
-    """Return what a game must have for a command (None: a question, which every game answers)."""
-    return NEEDS.get(type(command), frozenset()) if command is not None else frozenset()
+def needs_of(kind: type[GameCommand] | None) -> frozenset[Need]:
+    """Return what a game must have for a kind of command (None: for a question, nothing)."""
+    return frozenset() if kind is None else NEEDS.get(kind, frozenset())
 
 
 def offered(control: GameController) -> Collection[Need]:

@@ -97,7 +97,7 @@ def _is_offered(near: str, rules: GameRules, offers: Collection[Need]) -> bool:
         return False
     if command is None:
         return near in BEGUN or read_inquiry(near) is not None
-    return needs_of(command) <= {*offers}
+    return needs_of(type(command)) <= {*offers}
 
 
 def _hinted(text: str, names: Sequence[str], claim: str) -> Iterator[str]:

@@ -22,7 +22,7 @@ from tangy_tui.app.game_commands import (
     Tell,
     VoidResponse,
 )
-from tangy_tui.app.offered import NEEDS, Need
+from tangy_tui.app.offered import Need, needs_of
 from tangy_tui.app.plan_grammar import CHECK
 
 HELP = "You can type at any time:"
@@ -41,8 +41,7 @@ class Row(NamedTuple):
 
     def suits(self, offers: Collection[Need]) -> bool:
         """Return whether a game offers this."""
-        needs = self.needs if self.gives is None else NEEDS.get(self.gives, frozenset())
-        return needs <= {*offers}
+        return self.needs | needs_of(self.gives) <= {*offers}
 
 
 ROWS = (
