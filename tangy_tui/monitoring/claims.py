@@ -48,25 +48,16 @@ def claims_in(replay: GameReplay) -> list[Claim]:
     """
     claims, waiting = list[Claim](), dict[str, int]()
     for moment in replay.moments:
-        match moment.what:
-            case Noted("claim made", by, person, card, calls=calls):
-                if (before := waiting.get(card)) is None:
-                    waiting[card] = len(claims)
-                    claims.append(Claim(by, card, person, moment.at, calls))
-                elif person:
-                    claims[before] = replace(claims[before], person=person)
-            case Noted(did, by, person, card, calls=calls) if did in CLAIM_CHECKS:
-                if card not in waiting:
-                    waiting[card] = len(claims)
-                    claims.append(Claim(by, card, person, moment.at, calls))
-                made = claims[at := waiting.pop(card)]
-                claims[at] = replace(
-                    made,
-                    person=person or made.person,
-                    checked_at=moment.at,
-                    checked_calls=calls,
-                    result=did,
-                )
-            case _:
-                pass
+        note = moment.what
+        if not isinstance(note, Noted) or note.did not in ("claim made", *CLAIM_CHECKS):
+            continue
+        if note.detail not in waiting:
+            waiting[note.detail] = len(claims)
+            claims.append(Claim(note.by, note.detail, note.person, moment.at, note.calls))
+        made = claims[at := waiting[note.detail]]
+        made = replace(made, person=note.person or made.person)
+        if note.did in CLAIM_CHECKS:
+            del waiting[note.detail]
+            made = replace(made, checked_at=moment.at, checked_calls=note.calls, result=note.did)
+        claims[at] = made
     return claims
