@@ -133,8 +133,8 @@ def time_lines(control: GameController) -> list[str]:
     told = [game, f"You began at {end_words(time.begins, now)}."]
     if time.ends is None:
         return [*told, NO_END]
-    left = left_words(time.ends, now)
-    return [*told, left, PAUSES_COUNT] if MORE in left else [*told, left, PAUSES_COUNT, MORE]
+    told += [left_words(time.ends, now), PAUSES_COUNT]
+    return told if time.ends <= now else [*told, MORE]  # it has told MORE if the time is over
 
 
 def planned_until_words(times: Sequence[SessionTime]) -> str:
