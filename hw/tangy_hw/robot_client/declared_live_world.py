@@ -109,7 +109,7 @@ class DeclaredLiveWorld(LiveWorld):
             self.change(change)
         self._started = self.link.time - game.now
         waits, asked = past.waits(self.activity), (*game.queue, *past.asked_for)
-        self.requests.resume({p: waits.get(p, 0.0) for p in asked if p not in self.away})
+        self.requests.wait_on({p: waits.get(p, 0.0) for p in asked if p not in self.away})
         self.over = False
         self.commands.settle()
         self.commands.await_tablets()

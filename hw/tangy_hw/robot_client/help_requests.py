@@ -105,24 +105,19 @@ class HelpRequestTracker:
         self._met.discard(person)
 
     def wait_on(self, waits: Mapping[str, float]) -> None:
-        """Take requests by word that people made so many s ago, before the robot was on."""
+        """Take open requests of games before the robot was switched on as requests by word.
+
+        Their signs may not be seen again: staff may have asked for them.
+
+        Args:
+            waits: how long (s) each person has waited.
+        """
         for person, wait in waits.items():
             self._by_word.setdefault(person, self._link.time - wait)
 
     def over(self, person: str) -> None:
         """End a person's request by word."""
         self._by_word.pop(person, None)
-
-    def resume(self, waits: Mapping[str, float]) -> None:
-        """Take the open requests of an interrupted game as requests by word.
-
-        Their signs may not be seen again: staff may have asked for them.
-
-        Args:
-            waits: how long (s) each person has waited in the game.
-        """
-        now = self._link.time
-        self._by_word = {one: self._by_word.get(one, now - wait) for one, wait in waits.items()}
 
     def set_aside(self, person: str) -> None:
         """Close a person's request, even while the sign stays up."""

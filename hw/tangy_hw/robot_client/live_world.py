@@ -127,7 +127,7 @@ class LiveWorld(LivePlan):
         past.follow(self.tracker, self.change)
         asked = (*self.tracker.queue, *past.asked_for)  # these after the last step
         waits = past.waits(self.activity)
-        self.requests.resume({p: waits.get(p, 0.0) for p in asked if p not in self.away})
+        self.requests.wait_on({p: waits.get(p, 0.0) for p in asked if p not in self.away})
         self.calls.resume(past, self.activity)
         self._visited = past.visited(self.activity)
         self._row_began = self.seconds - past.since_call(self.activity)
