@@ -185,7 +185,8 @@ class StaffLines:
         return fault is not None
 
     def _end(self) -> bool:
-        self._telling.write_all(belief_lines(self._game, self._name))
+        if not self._controller.robot.there:  # reports tell staff what works with whom
+            self._telling.write_all(belief_lines(self._game, self._name))
         return not self._telling.stopped
 
     # ----------------------------------------------------------------------------- the game

@@ -90,6 +90,7 @@ class GameTelling:
                 lines = game_lines(
                     one, game, self._name, answered,
                     goes_on=on, stopped=self._controller.stopped, ends=self._controller.ending,
+                    played=self._controller.view().seconds,
                 )  # fmt: skip
                 if isinstance(one, GameChanged) and one.what == "taken back" and taken_back:
                     lines = lines[1:]  # staff were told so

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.beliefs import Beta, probability_best
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.game_records import CallMade
+from tangy_profiles.planned_game import as_planned
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -27,7 +28,9 @@ from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.numbers import counted, listed, of_times, often
+from tangy_tui.text.planned_time import clock_words
 from tangy_tui.text.situations import Name, kept_words, once_words
+from tangy_tui.text.staff_view import won_words
 from tangy_tui.text.steps import step_sentence, unfinished_words
 
 if TYPE_CHECKING:
@@ -57,6 +60,7 @@ def game_lines(
     goes_on: bool = False,
     stopped: bool = False,
     ends: bool = False,
+    played: float = 0.0,
 ) -> list[str]:
     """Describe one event of a game in lines.
 
@@ -68,13 +72,16 @@ def game_lines(
         goes_on: whether a resumed game continues at once.
         stopped: whether the robot is stopped.
         ends: whether staff have ended the game.
+        played: the time played (s), for a game that is resumed.
     """
-    activity = supervision.world.activity
+    activity, planned = supervision.world.activity, as_planned(supervision.world)
+    calls = 0 if planned is None else len(planned.called_now)
     match event:
         case GameBegun(game):
             return [begun_words(supervision.game.log.number(game))]
-        case ResumedGame(game, steps=steps):
-            return [resumed_words(supervision.game.log.number(game), steps, goes_on=goes_on)]
+        case ResumedGame(game):
+            number = supervision.game.log.number(game)
+            return [resumed_words(number, calls, played, "" if goes_on else TYPE_GO_ON)]
         case Acted(number, state, _, choice, action, outcome, _, speech):
             step = step_sentence(
                 activity, state, action.behaviour.name, action.target, name,
@@ -109,8 +116,9 @@ def game_lines(
             return []  # the prompt tells it
         case GameChanged():
             return changed_lines(event, activity, name)
-        case GameEnded(pauses=pauses):
-            return [ended_words(event), *paused_lines(*pauses)]
+        case GameEnded():
+            won = "" if planned is None else won_words([name(one) for one in planned.has_won])
+            return [*filter(None, (ended_words(event, calls), won))]
 
 
 def says_line(speech: str) -> str:
@@ -118,12 +126,16 @@ def says_line(speech: str) -> str:
     return f"Tangy says: {speech}"
 
 
-def ended_words(ended: GameEnded) -> str:
-    """Tell how a game ended, and why if it stopped or ended early."""
+def ended_words(ended: GameEnded, calls: int | None = None) -> str:
+    """Tell how a game ended, and why if it stopped or ended early.
+
+    For staff, `calls` is how many numbers were called; None: tell the steps, for technicians.
+    """
+    far = counted(ended.steps, "step") if calls is None else counted(calls, "call") if calls else ""
+    after = f" after {far}" if far else ""
     if ended.stopped is not None:
-        return f"The game stopped after {counted(ended.steps, 'step')}. {ended.stopped}"
-    told = f"The game is over after {counted(ended.steps, 'step')}. {early_words(ended)}"
-    return told.rstrip()
+        return f"The game stopped{after}. {ended.stopped}"
+    return f"The game is over{after}. {early_words(ended)}".rstrip()
 
 
 def early_words(ended: GameEnded) -> str:
@@ -235,10 +247,18 @@ def begun_words(number: int) -> str:
     return f"Game {number} begins."
 
 
-def resumed_words(number: int, steps: int, *, goes_on: bool = False) -> str:
-    """Tell that an interrupted game is resumed, and that it is paused unless it `goes_on`."""
-    then = "" if goes_on else " It is paused."
-    return f"Game {number} is back where it was after {counted(steps, 'step')}.{then}"
+TYPE_GO_ON, PRESS_GO_ON = "Type: go on", "{pause} goes on."
+"""How staff let a paused game go on."""
+
+
+def resumed_words(number: int, calls: int, played: float, then: str) -> str:
+    """Tell that an interrupted game is resumed, how far it had come, and that it is paused.
+
+    `played` is the time played, in s; `then` tells how it goes on, "" if it goes on at once.
+    """
+    far = f"{counted(calls, 'number')} called, " if calls else ""
+    paused = f" It is paused. {then}" if then else ""
+    return f"Game {number} is back where it was: {far}{clock_words(played)} played.{paused}"
 
 
 def earlier_steps_words(steps: int) -> str:
@@ -248,16 +268,10 @@ def earlier_steps_words(steps: int) -> str:
     return f"{counted(steps, 'earlier step')}: see `tangy log show last`."
 
 
-def over_words(ended: GameEnded) -> str:
+def over_words(ended: GameEnded, calls: int) -> str:
     """Tell that a game is over, and which key starts another."""
-    early = early_words(ended).replace("{", "{{").replace("}", "}}")
-    told = f"The game is over after {counted(ended.steps, 'step')}. {early}".rstrip()
+    told = ended_words(ended, calls).replace("{", "{{").replace("}", "}}")
     return f"{told} {{next}} plays another."
-
-
-def broken_off_words(steps: int, reason: str) -> str:
-    """Tell that a game stopped, and why."""
-    return f"The game stopped after {counted(steps, 'step')}. {reason}"
 
 
 def following_words(games: int) -> str:

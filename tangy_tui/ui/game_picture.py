@@ -36,9 +36,10 @@ from tangy_tui.text.fault_moves import move_words
 from tangy_tui.text.fault_views import WAITS
 from tangy_tui.text.faults import kind_words
 from tangy_tui.text.games import (
+    PRESS_GO_ON,
     begun_words,
-    broken_off_words,
     earlier_steps_words,
+    ended_words,
     over_words,
     response_words,
     resumed_words,
@@ -84,6 +85,8 @@ class GamePicture:
         """Whether the time to the next call is counted down; None: the screen is not for staff."""
         self.scene: Callable[[], Scene] = supervision.world.scene
         """Returns the scene to show."""
+        self.played: Callable[[], float] = lambda: 0.0
+        """Returns the time played, in s."""
         self.over: Callable[[], str] = lambda: OVER_NOW
         """Returns the stage while no game runs."""
         self._stage = self._spoken = ""
@@ -130,8 +133,7 @@ class GamePicture:
                 case GameBegun(game, _, state) | ResumedGame(game, _, _, state):
                     number = self._supervision.game.log.number(game)
                     resumed = event.steps if isinstance(event, ResumedGame) else 0
-                    again = resumed_words(number, resumed, goes_on=self.goes_on)
-                    log.write(again if resumed else begun_words(number))
+                    log.write(self._again(number) if resumed else begun_words(number))
                     room = self._screen.query_one(RoomView)
                     room.say("")
                     room.put(state.place)
@@ -172,10 +174,21 @@ class GamePicture:
                         log.write(line.strip())
                     self.show_scene(0, drive=False, pace=pace)
                 case GameEnded(stopped=None):
-                    words = over_words(event)
+                    words = over_words(event, self._calls)
                     log.write(with_keys(words, keymap_of(self._screen.app)), "good")
-                case GameEnded(_, steps, str(reason)):
-                    log.write(broken_off_words(steps, reason), "bad")
+                case GameEnded():
+                    log.write(ended_words(event, self._calls), "bad")
+
+    @property
+    def _calls(self) -> int:
+        """How many numbers count as called."""
+        planned = as_planned(self._supervision.world)
+        return 0 if planned is None else len(planned.called_now)
+
+    def _again(self, number: int) -> str:
+        """Tell that a game goes on where it was."""
+        how = "" if self.goes_on else with_keys(PRESS_GO_ON, keymap_of(self._screen.app))
+        return resumed_words(number, self._calls, self.played(), how)
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
         """Update the status line: robot, stage and note; for staff without the step."""

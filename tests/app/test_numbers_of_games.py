@@ -12,7 +12,13 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import GameBegun, GameEnded
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.games import read_games
-from tangy_tui.text.games import begun_words, ended_words, game_lines
+from tangy_tui.text.games import (
+    TYPE_GO_ON,
+    begun_words,
+    ended_words,
+    game_lines,
+    resumed_words,
+)
 
 
 @pytest.fixture
@@ -41,3 +47,14 @@ def test_a_single_step_is_counted_as_one() -> None:
     )
     assert ended_words(GameEnded("g", 1, None)) == "The game is over after 1 step."
     assert ended_words(GameEnded("g", 2, None)) == "The game is over after 2 steps."
+
+
+def test_staff_read_calls_and_time_instead_of_steps() -> None:
+    assert ended_words(GameEnded("g", 40, None), 23) == "The game is over after 23 calls."
+    assert ended_words(GameEnded("g", 2, None), 0) == "The game is over."
+    assert ended_words(GameEnded("g", 1, "It was left."), 0) == "The game stopped. It was left."
+    again = resumed_words(1, 23, 723.0, TYPE_GO_ON)
+    assert again == (
+        "Game 1 is back where it was: 23 numbers called, 12:03 played. It is paused. Type: go on"
+    )
+    assert resumed_words(2, 0, 61.0, "") == "Game 2 is back where it was: 1:01 played."

@@ -358,7 +358,7 @@ def test_a_stopped_game_gives_its_reason(workspace: Workspace, cover: Cover) -> 
     shown = [demonstration.without_last() for demonstration in cover("bingo", 1, 4)]
     policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
     said = play_by_turns(workspace.supervision(policy, 3), scripted=True)
-    stopped = next(line for line in said if line.startswith("The game stopped after "))
+    stopped = next(line for line in said if line.startswith("The game stopped"))
     assert "Nobody has shown Tangy what to do here yet: somebody has won." in stopped
 
 
@@ -380,7 +380,7 @@ def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
         demonstrations=(lambda: shown) if knows else None,
     )
     assert said[1].startswith("Tangy asks. Nobody has shown Tangy what to do here yet: the game")
-    stopped = next(n for n, line in enumerate(said) if line.startswith("The game stopped after"))
+    stopped = next(n for n, line in enumerate(said) if line.startswith("The game stopped"))
     return said[2:stopped]
 
 

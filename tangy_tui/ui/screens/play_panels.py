@@ -80,6 +80,7 @@ class PlayPanels(TangyScreen[Tally]):
         self.control = control
         self._supervision = control.supervision
         self.picture = GamePicture(self, workspace, control.supervision)
+        self.picture.played = lambda: control.view().seconds
         self.picture.scene = lambda: control.plan.scene
         self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
