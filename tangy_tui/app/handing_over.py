@@ -31,7 +31,8 @@ class HandingOver(PausingGames):
     def _take_over(self) -> list[Result]:
         if refused := self.refusal():
             return [refused]
-        self.taking_over, self.going, self.single = True, True, False
+        self.taking_over = True
+        self._lets_go_on()
         self._watch.go_on()
         self.autonomy.reset()
         self.note("took over")

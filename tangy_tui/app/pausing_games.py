@@ -98,6 +98,10 @@ class PausingGames(JoiningGames):
             self.robot.hold_calls(held=bool(self._holds))
             self._tell_all()
 
+    def _lets_go_on(self, *, single: bool = False) -> None:
+        """Let the game go on, for a single step or more; if staff drive, once they have driven."""
+        self._goes, self.going, self.single = True, not self._by_hand, single
+
     def _stop(self, by: str) -> list[Result]:
         before, self.stopped, self.going = self.stopped, True, False
         if by or not before:
@@ -119,8 +123,8 @@ class PausingGames(JoiningGames):
         self._watch.go_on()
         if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
-        self._goes, self.going = True, not self._by_hand
-        self.single = self.paused_itself = False
+        self._lets_go_on()
+        self.paused_itself = False
         self.goes_on = self.goes_on or self.joined
         if (fault := self.supervision.halted) is not None:
             return [StaffNote("still halted", fault.name)]
@@ -130,5 +134,5 @@ class PausingGames(JoiningGames):
         if refused := self.refusal():
             return [refused]
         self._stands(did=True)
-        self.single = self.going = True
+        self._lets_go_on(single=True)
         return [StaffNote("one step")]

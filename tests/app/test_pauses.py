@@ -142,6 +142,7 @@ def test_a_single_step_that_staff_did_not_wait_for_pauses_no_game_later(
     robot.next(2)
     for command in (Pause(), OneStep(), *instead):  # before Tangy's next step
         robot.control.apply(command)
+        assert not (robot.control.single and isinstance(command, Pause))  # screens look at it
     called = len(robot.world.called)
     robot.next(3)
     assert robot.control.phase == "running" and len(robot.world.called) == called + 3
@@ -217,6 +218,9 @@ def test_a_stop_is_told_as_one_and_not_as_a_pause(workspace: Workspace) -> None:
         ([], [Pause(), GoOn()], "running"),
         ([], [StopRobot()], "stopped"),
         ([], [StopRobot(), GoOn()], "running"),
+        ([], [TakeOver(), GiveBack()], "running"),
+        ([Pause()], [TakeOver(), GiveBack()], "running"),
+        ([OneStep()], [Pause()], "paused"),
     ],
 )
 def test_the_game_waits_while_staff_drive_and_is_then_as_they_said(
@@ -236,3 +240,70 @@ def test_the_game_waits_while_staff_drive_and_is_then_as_they_said(
     assert len(robot.world.called) == called and robot.control.phase == after
     robot.next(2)
     assert (len(robot.world.called) > called) is (after == "running")
+
+
+@pytest.mark.parametrize("before", [[], [Pause()]])
+def test_a_single_step_that_staff_want_while_they_drive_comes_after_it(
+    workspace: Workspace, before: list[GameCommand]
+) -> None:
+    robot = Robot(workspace)
+    robot.next(2)
+    for command in before:
+        robot.control.apply(command)
+    called = len(robot.world.called)
+    with robot.control.driving():
+        robot.control.apply(OneStep())
+        robot.next(2)
+        assert len(robot.world.called) == called
+    robot.next(3)
+    assert len(robot.world.called) == called + 1 and robot.control.phase == "paused"
+
+
+@pytest.mark.parametrize(
+    ("before", "meanwhile", "logged"),
+    [
+        ([], [GoOn()], []),
+        ([], [Pause()], ["paused"]),
+        ([], [Pause(), GoOn(), GoOn()], ["paused", "went on"]),
+        ([Pause()], [Pause(), GoOn()], ["paused", "went on"]),
+        ([Pause()], [], ["paused"]),
+    ],
+)
+def test_a_pause_is_logged_once_also_while_staff_drive(
+    workspace: Workspace,
+    before: list[GameCommand],
+    meanwhile: list[GameCommand],
+    logged: list[str],
+) -> None:
+    robot = Robot(workspace)
+    robot.next(2)
+    for command in before:
+        robot.control.apply(command)
+    with robot.control.driving():
+        for command in meanwhile:
+            robot.control.apply(command)
+    acts = [event.record.did for event in workspace.store.events(StaffAction)]
+    assert [did for did in acts if did in ("paused", "went on")] == logged
+
+
+def test_the_game_waits_while_staff_drive_and_then_for_what_they_say_next(
+    workspace: Workspace,
+) -> None:
+    robot = Robot(workspace)
+    robot.next(2)
+    with robot.control.driving():
+        robot.control.apply(TakeOver())
+        robot.next(2)
+        assert robot.control.supervision.question is None
+    robot.next(1)
+    assert robot.control.phase == "asking"
+
+
+def test_a_game_that_goes_on_counts_no_longer_as_paused_by_the_program(
+    workspace: Workspace,
+) -> None:
+    control = Robot(workspace).control
+    control.apply(Pause(unasked=True))
+    assert control.paused_itself  # staff are asked before it goes on
+    control.apply(GoOn())
+    assert not control.paused_itself

@@ -89,7 +89,9 @@ async def test_a_device_is_named_before_each_call_of_its_driver_and_none_afterwa
     def calls(device: str, did: str = "started") -> None:
         told.append((device, did))
 
-    runtime = assemble(replace(setup, without=("arms", "requests")), calls)
+    left = {"arms": {"kind": "told"}}  # as the bench's drivers and requests
+    off = replace(setup, without=("arms", "requests"), drivers=left, requests="none such")
+    runtime = assemble(off, calls)
     runtime.calls = calls
     async with runtime:
         pass
@@ -175,6 +177,13 @@ def test_a_robot_can_do_without_its_arms_but_not_without_what_it_drives_by() -> 
     without = left_out(robot, "arms")
     assert "arms" not in without.devices
     assert [device.name for device in without.undriven] == ["arms"]
+
+
+def test_a_device_that_is_left_out_has_no_driver_and_does_not_hide_another(tmp_path: Path) -> None:
+    robot = load_robot(str(robot_file(tmp_path)))
+    without = left_out(left_out(robot, "arms"), "gripper")
+    assert {*without.drivers} == {"base", "laser"}
+    assert [device.name for device in without.undriven] == ["arms", "gripper"]
 
 
 @pytest.mark.slow
