@@ -31,11 +31,12 @@ from tangy_hw.navigation.poses import Floats, lengths
 SHARES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2, 0.12)  # shares of a command that are tried
 REACH = 3.0  # metres beyond which people are out of reach while the robot stops
 STEP = 0.1  # seconds between the checked moments
-NEARER = 0.005  # metres by which driving must be worse than stopping, for standing people
-KEPT = 0.22  # metres from a standing person below which driving may not be worse at all
-KEPT_END = 0.2  # the same from a return: its track tells how far the person reaches
+WALKS = 0.25  # m/s of a walker
+NEARER = 0.005  # metres by which driving may end nearer than stopping does, to standing people
+KEPT = 0.22  # metres beyond the body of a standing person within which it may not end nearer
+KEPT_END = 0.2  # the same beyond a return without a track, which is on the body
+FURTHER = 0.01  # metres by which driving must end further away than stopping does, from walkers
 PAIR = 0.01  # m of the radius by which a track of two legs is known; one leg tells less exactly
-FURTHER, WALKS = 0.01, 0.25  # m by which driving must be better, for walkers; m/s of a walker
 SPOT = 0.02  # m/s below which a robot turns on the spot
 FRESH = 0.5  # seconds for which a new track is assumed to approach fast
 BEHIND = cos(radians(110.0))  # of the bearing from which on a walker is behind the robot
@@ -84,16 +85,32 @@ def _slower_before_followers(twist: Twist, around: NearbyPeople, limits: MotionL
     return Twist(limits.people_speed, twist.turn * share)
 
 
-class _Bodies(NamedTuple):
-    """Positions (n, 2) in m, velocities (n, 2), required separations, and speeds of approach.
+class _Body(NamedTuple):
+    """A person's track, or a return without a track, as the robot has to keep apart from it.
 
-    If both driving and stopping come too near, driving must gain `leeway` m over stopping: slightly
-    negative for standing people, positive for walkers. A negative one only holds beyond `kept` m:
-    else the robot would creep up to a person, command by command. `held` is the same for commands
-    so slow that the required separations would let the robot nearer; 0: they decide. Walkers may
-    also turn, and standing people set off, and approach at `turned` m/s; 0 if not. The velocity of
-    `fresh` bodies is not known yet.
+    If both driving and stopping come nearer than `apart` m, which grows at `approach` m/s, driving
+    must gain `leeway` m over stopping: slightly negative for standing people, positive for walkers.
+    A negative one only holds beyond `kept` m: else the robot would creep up to a person, command by
+    command. `held` is the same for commands so slow that `apart` would let the robot nearer; 0:
+    `apart` decides. Walkers may also turn, and standing people set off, and approach at `turned`
+    m/s; 0 if not. The velocity (m/s) of a `fresh` body is not known yet.
     """
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    apart: float
+    approach: float
+    leeway: float
+    turned: float
+    kept: float
+    held: float
+    fresh: bool
+
+
+class _Bodies(NamedTuple):
+    """Bodies as arrays: positions and velocities (n, 2), and the other values of `_Body` (n,)."""
 
     at: Floats
     velocity: Floats
@@ -103,36 +120,47 @@ class _Bodies(NamedTuple):
     turned: Floats
     kept: Floats
     held: Floats
-    fresh: Floats
+    fresh: NDArray[np.bool_]
 
 
 def _bodies(around: NearbyPeople, limits: MotionLimits) -> _Bodies:
+    """Return the people within reach."""
     tracks = [one for one in around.tracks if np.hypot(one.x, one.y) < REACH]
     ends = around.ends[lengths(around.ends) < REACH]
-    rows = [
-        (
-            one.x,
-            one.y,
-            one.vx,
-            one.vy,
-            one.half + limits.margin,
-            limits.approach_new if one.age < FRESH else limits.approach,
-            # a walker who turns round has no speed for a moment
-            FURTHER if max(one.speed, one.pace) > WALKS else -NEARER,
-            _turned(one, limits),
-            one.half + KEPT,
-            one.half + KEPT if abs(one.half - TORSO) < PAIR else 0.0,
-            one.age < FRESH,
-        )
-        for one in tracks
-    ]
-    apart = END + limits.margin
-    rows += [
-        (x, y, 0.0, 0.0, apart, limits.approach, -NEARER, 0.0, KEPT_END, 0.0, False)
-        for x, y in ends
-    ]
-    table = np.array(rows, dtype=np.float64).reshape(-1, 11)
-    return _Bodies(table[:, :2], table[:, 2:4], *table[:, 4:].T)
+    bodies = [_tracked(one, limits) for one in tracks]
+    bodies += [_return(x, y, limits) for x, y in ends]
+    table = np.array(bodies, dtype=np.float64).reshape(-1, len(_Body._fields))
+    x, y, vx, vy, apart, approach, leeway, turned, kept, held, fresh = table.T
+    at, velocity = np.column_stack((x, y)), np.column_stack((vx, vy))
+    return _Bodies(at, velocity, apart, approach, leeway, turned, kept, held, fresh > 0.0)
+
+
+def _tracked(one: Track, limits: MotionLimits) -> _Body:
+    # a walker who turns round has no speed for a moment
+    walks, fresh = max(one.speed, one.pace) > WALKS, one.age < FRESH
+    return _Body(
+        *(one.x, one.y, one.vx, one.vy),
+        apart=one.half + limits.margin,
+        approach=limits.approach_new if fresh else limits.approach,
+        leeway=FURTHER if walks else -NEARER,
+        turned=_turned(one, limits),
+        kept=one.half + KEPT,
+        held=one.half + KEPT if abs(one.half - TORSO) < PAIR else 0.0,
+        fresh=fresh,
+    )
+
+
+def _return(x: float, y: float, limits: MotionLimits) -> _Body:
+    return _Body(
+        *(x, y, 0.0, 0.0),
+        apart=END + limits.margin,
+        approach=limits.approach,
+        leeway=-NEARER,
+        turned=0.0,
+        kept=KEPT_END,
+        held=0.0,
+        fresh=False,
+    )
 
 
 def _turned(one: Track, limits: MotionLimits) -> float:
@@ -189,7 +217,7 @@ def _stays_clear(
     walkers = near & walk
     if not twist.forward or not walkers.any():
         return True
-    if (walkers & (bodies.fresh > 0.0)).any():
+    if (walkers & bodies.fresh).any():
         return False
     front = seen if twist.forward > 0.0 else -seen
     slowly = abs(twist.forward) <= limits.people_speed
