@@ -60,6 +60,10 @@ class GameBeginning(EventRecord):
             self.minutes,
         )
 
+    def follows(self, game: GameBeginning) -> bool:
+        """Return whether it is the next game after another one in the same run."""
+        return (self.number, self.seed) == (game.number + 1, game.seed)
+
 
 @kind("game world set")
 class GameWorldSet(EventRecord):

@@ -367,8 +367,7 @@ def _run(games: list[Event[GameBeginning]]) -> list[Event[GameBeginning]]:
     """Return the newest game with the games before it in the same run."""
     run = [games[-1]]
     for event in reversed(games[:-1]):
-        first, before = run[0].record, event.record
-        if (before.number, before.seed) != (first.number - 1, first.seed):
+        if not run[0].record.follows(event.record):
             break
         run.insert(0, event)
     return run

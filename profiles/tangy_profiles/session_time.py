@@ -34,8 +34,7 @@ def session_times(store: Store, games: Iterable[str]) -> dict[str, SessionTime]:
     before = dict[str, GameBeginning]()
     for event in store.events(GameBeginning):
         game, last = event.record, before.get(event.record.activity)
-        follows = last is not None and (last.number, last.seed) == (game.number - 1, game.seed)
-        first = session_of[last.game] if follows and last is not None else game.game
+        first = game.game if last is None or not game.follows(last) else session_of[last.game]
         session_of[game.game], before[game.activity] = first, game
         if first == game.game:
             began = datetime.fromisoformat(event.at)

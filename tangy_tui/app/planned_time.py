@@ -22,13 +22,12 @@ class PlannedTime:
 
     def __init__(self, supervision: Supervision, past: PastGame | None, by: str) -> None:
         """Read the time of a supervision's games, or of the game that it resumes first."""
-        self._log, self._facilitation, self._by = supervision.game.log, supervision.game, by
-        self._supervision = supervision
+        self._supervision, self._log, self._by = supervision, supervision.game.log, by
         self._resumes = "" if past is None else past.beginning.game
 
     @property
     def _game(self) -> str:
-        return self._facilitation.game or self._resumes
+        return self._supervision.game.game or self._resumes
 
     @property
     def now(self) -> SessionTime | None:
