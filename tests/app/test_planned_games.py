@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tangy_profiles.cards import winning_state
 from tangy_profiles.game_records import GameChange, GameStep
 from tangy_profiles.game_rules import GamePlan
 from tangy_profiles.past_game import interrupted_game
@@ -56,15 +55,9 @@ def test_a_game_continues_for_each_chosen_pattern(planned: Planned) -> None:
 
 def test_each_of_several_winners_is_celebrated(planned: Planned) -> None:
     planned.begin(GamePlan(several=True))
-    world, winning = planned.world, winning_state(planned.workspace.activity.user_states)
-    while world.tracker.seen != winning:
-        planned.events += go_on_by_script(planned.control, expert=True)
-    first = world.tracker.place
-    second = next(person for person in world.people if person != first)
-    world.vouched |= {second}  # their card wins at the same call
-    world.tracker.ask(second)
+    winners = planned.win_twice()
     planned.play()
-    assert planned.celebrated()[:2] == [first, second] and planned.supervision.faults == []
+    assert planned.celebrated()[:2] == [*winners] and planned.supervision.faults == []
     assert planned.changes()[0] == "others first"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_profiles.cards import winning_state
 from tangy_profiles.game_rules import GamePlan
 from tangy_tui.app.game_commands import ChoosePatterns, EndGame
 from tangy_tui.app.game_view import view_of
@@ -34,14 +33,7 @@ NAMES = {"user1": "Ann", "user2": "Ben", "user3": "Cleo", "user4": "Dora"}
 def won_first(planned: Planned) -> str:
     """Play until a first person of several has won; return who it is."""
     planned.begin(GamePlan(("line", "two lines"), several=True))
-    world = planned.world
-    winning = winning_state(planned.workspace.activity.user_states)
-    while world.tracker.seen != winning:
-        planned.events += go_on_by_script(planned.control, expert=True)
-    first = world.tracker.place
-    second = next(person for person in world.people if person != first)
-    world.vouched |= {second}  # their card wins at the same call
-    world.tracker.ask(second)
+    first, _ = planned.win_twice()
     while "others first" not in planned.changes():
         planned.events += go_on_by_script(planned.control, expert=True)
     return first

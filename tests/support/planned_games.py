@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import cast
 
+from tangy_profiles.cards import winning_state
 from tangy_profiles.game_rules import GamePlan
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.game_commands import GameCommand
@@ -39,6 +40,17 @@ class Planned:
         """Play until a number of calls or the end of the game."""
         while not self.supervision.over and len(self.world.called_now) < calls:
             self.events += go_on_by_script(self.control, expert=True)
+
+    def win_twice(self) -> tuple[str, str]:
+        """Play until somebody has won; let another card win, too, and return both people."""
+        world, winning = self.world, winning_state(self.workspace.activity.user_states)
+        while world.tracker.seen != winning:
+            self.events += go_on_by_script(self.control, expert=True)
+        first = world.tracker.place
+        second = next(person for person in world.people if person != first)
+        world.vouched |= {second}
+        world.tracker.ask(second)
+        return first, second
 
     def do(self, command: GameCommand) -> list[str]:
         """Carry out a command; return the kinds of its events."""
