@@ -45,9 +45,7 @@ class CanSpeak(Protocol):
     async def quiet(self) -> None:
         """Wait until nothing is spoken."""
 
-    def prerender(
-        self, texts: Iterable[str], preference: VoicePreference | None = None
-    ) -> asyncio.Task[PrerenderedSpeech]:
+    def prerender(self, texts: Iterable[str]) -> asyncio.Task[PrerenderedSpeech]:
         """Synthesise texts in advance."""
 
     async def close(self) -> None:

@@ -138,25 +138,14 @@ class SpeechVoice:
         """Wait until nothing is spoken, and `on_end` was called."""
         await self._quiet.wait()
 
-    def prerender(
-        self,
-        texts: Iterable[str],
-        preference: VoicePreference | None = None,
-        progress: Callable[[int, int], None] | None = None,
-    ) -> asyncio.Task[PrerenderedSpeech]:
+    def prerender(self, texts: Iterable[str]) -> asyncio.Task[PrerenderedSpeech]:
         """Synthesise texts in advance, in the background, one at a time.
-
-        Args:
-            texts: the texts.
-            preference: rate and voice, as for `say`.
-            progress: called after each text with the number of finished texts, and of all.
 
         Returns:
             A task that never fails: what was made, or found in the cache. It stops at the first
             text that cannot be synthesised, and reports it.
         """
-        wanted = (preference or self._usual).over(self._usual)
-        task = asyncio.create_task(self._prerender(tuple(texts), wanted, progress))
+        task = asyncio.create_task(self._prerender(tuple(texts)))
         self._preparing.add(task)
         task.add_done_callback(self._preparing.discard)
         return task
@@ -234,25 +223,18 @@ class SpeechVoice:
             self._tell_once(str(error))
             return wav
 
-    async def _prerender(
-        self,
-        texts: tuple[str, ...],
-        preference: VoicePreference,
-        progress: Callable[[int, int], None] | None,
-    ) -> PrerenderedSpeech:
+    async def _prerender(self, texts: tuple[str, ...]) -> PrerenderedSpeech:
         begun, size, done = time.monotonic(), 0, 0
         if self.silent:
             texts = ()
         for text in texts:
             try:
-                wav = await self._made(text, preference)
+                wav = await self._made(text, self._usual)
                 size += wav.stat().st_size if wav is not None else 0
             except (VoiceError, OSError) as error:
                 self._tell_once(str(error))
                 break
             done += 1
-            if progress is not None:
-                progress(done, len(texts))
         return PrerenderedSpeech(done, size, time.monotonic() - begun)
 
     def _begin(self) -> None:

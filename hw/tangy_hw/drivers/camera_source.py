@@ -57,14 +57,11 @@ class CameraSource:
         return self.kind in ("device", "stream")
 
 
-def find_camera(
-    name: str, *, rate: float = 0.0, loop: bool = False, each: bool = False
-) -> CameraSource:
+def find_camera(name: str, *, loop: bool = False, each: bool = False) -> CameraSource:
     """Find a source by its name, without opening it.
 
     Args:
         name: one of those above.
-        rate: frame rate per second of a file or folder, 0 for its own.
         loop: restart a file or folder at its end.
         each: deliver every frame of a file or folder, as fast as they are taken.
 
@@ -90,12 +87,12 @@ def find_camera(
     if is_folder:
         if not pictures_in(path):
             raise CameraError(f"{shown}: there are no pictures in this folder.")
-        return CameraSource(shown, "folder", name, rate or FOLDER_RATE, loop, each)
+        return CameraSource(shown, "folder", name, FOLDER_RATE, loop, each)
     if not is_file:
         raise CameraError(f"{shown}: is neither a file nor a folder.")
     if path.suffix.lower() in PICTURES:
-        return CameraSource(shown, "folder", name, rate or FOLDER_RATE, loop, each)
-    return CameraSource(shown, "file", name, rate, loop, each)
+        return CameraSource(shown, "folder", name, FOLDER_RATE, loop, each)
+    return CameraSource(shown, "file", name, loop=loop, each=each)
 
 
 def pictures_in(path: Path) -> list[Path]:

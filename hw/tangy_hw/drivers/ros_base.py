@@ -30,7 +30,6 @@ class RosBase:
         self,
         bridge: Rosbridge,
         *,
-        name: str = "base",
         drive: str = "/cmd_vel",
         odometry: str = "/odom",
         stamped: bool = False,
@@ -43,7 +42,6 @@ class RosBase:
 
         Args:
             bridge: the link to the robot.
-            name: its name in the robot's profile.
             drive: topic for velocity commands.
             odometry: topic of its odometry.
             stamped: it takes geometry_msgs/TwistStamped, as some ROS 2 bases do.
@@ -52,7 +50,7 @@ class RosBase:
             watchdog: stops the base if this process hangs.
             diagnostics: diagnostics of the robot, if it publishes any.
         """
-        self.name = name
+        self.name = "base"
         self._bridge, self._diagnostics = bridge, diagnostics
         self._velocity = VelocityTopic(bridge, drive, stamped=stamped)
         self._odometry_topic = odometry

@@ -13,17 +13,14 @@ CHARGING, FULL = 1, 4  # of power_supply_status
 class RosBattery:
     """Reports the charge of the battery, and whether it is charging."""
 
-    def __init__(
-        self, bridge: Rosbridge, *, name: str = "battery", topic: str = "/battery_state"
-    ) -> None:
+    def __init__(self, bridge: Rosbridge, *, topic: str = "/battery_state") -> None:
         """Set its topic.
 
         Args:
             bridge: the link to the robot.
-            name: its name in the robot's profile.
             topic: name of the topic.
         """
-        self.name = name
+        self.name = "battery"
         self._bridge, self._topic = bridge, topic
         self._newest: LatestValue[dict[str, Fact]] = LatestValue(bridge.clock)
         self._begun = self._to_hundred = False

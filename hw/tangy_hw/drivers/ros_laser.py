@@ -26,7 +26,6 @@ class RosLaser:
         self,
         bridge: Rosbridge,
         *,
-        name: str = "laser",
         topic: str = "/scan",
         turned: float = 0.0,
         diagnostics: RosDiagnostics | None = None,
@@ -35,12 +34,11 @@ class RosLaser:
 
         Args:
             bridge: the link to the robot.
-            name: its name in the robot's profile.
             topic: name of the topic.
             turned: rotation of the scanner to the left of the robot's front, in rad.
             diagnostics: diagnostics of the robot, if it publishes any.
         """
-        self.name = name
+        self.name = "laser"
         self._bridge, self._topic, self._turned = bridge, topic, turned
         self._diagnostics = diagnostics
         self._newest: LatestValue[Scan] = LatestValue(bridge.clock)

@@ -109,7 +109,6 @@ class RosStopButton:
         self,
         bridge: Rosbridge,
         *,
-        name: str = "stop_button",
         topic: str = "/stop_button",
         pressed: bool = True,
         changes_only: bool = False,
@@ -118,12 +117,11 @@ class RosStopButton:
 
         Args:
             bridge: the link to the robot.
-            name: its name in the robot's profile.
             topic: name of the topic.
             pressed: value that means pressed; some publish False.
             changes_only: it publishes changes only, so its age is that of the link.
         """
-        self.name = name
+        self.name = "stop_button"
         self._bridge, self._topic = bridge, topic
         self._pressed, self._changes_only = pressed, changes_only
         self._newest: LatestValue[bool] = LatestValue(bridge.clock)

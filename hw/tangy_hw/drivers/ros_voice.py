@@ -36,32 +36,28 @@ class RosVoice:
         self,
         bridge: Rosbridge,
         *,
-        name: str = "voice",
         say: str = "/voice/say",
         said: str = "/voice/said",
         hush: str = "/voice/hush",
         play: str = "",
         with_id: bool = False,
-        patience: float = PATIENCE_SECONDS,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
         """Set its topics.
 
         Args:
             bridge: the link to the robot.
-            name: its name in the robot's profile.
             say: topic for text to speak.
             said: topic that reports the end of each text.
             hush: topic for std_msgs/Empty, which silences the voice.
             play: topic for the path of a WAV file to play; "": it plays none.
             with_id: whether texts are sent with an id.
-            patience: s beyond the expected duration, until the voice counts as dead.
             diagnostics: diagnostics of the robot, if it publishes any.
         """
-        self.name = name
+        self.name = "voice"
         self._bridge, self._diagnostics = bridge, diagnostics
         self._say, self._said, self._hush, self._play = say, said, hush, play
-        self._with_id, self._patience = with_id, patience
+        self._with_id = with_id
         self._numbers = count(1)
         self._waiting: dict[asyncio.Future[None], tuple[str, float]] = {}
         self._dead = self._begun = False
@@ -127,7 +123,7 @@ class RosVoice:
         data = json.dumps({"id": int(key), "text": text}) if self._with_id else text
         self._bridge.publish(topic, {"data": data})
         over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        takes = self._patience + seconds + sum(before for _, before in self._waiting.values())
+        takes = PATIENCE_SECONDS + seconds + sum(before for _, before in self._waiting.values())
         self._waiting[over] = key, seconds
         clock = self._bridge.clock
         try:

@@ -36,6 +36,7 @@ YIELD, YIELD_WITHIN = 6.0, 0.45
 """Extra cost factor at a walking person, and the m in which it falls to 1/e."""
 STEP = 0.05  # metres between the points of a path
 OUT = 0.5  # metres that a robot too near to an obstacle may move to get free
+AS_CHEAP = 1.01  # cost of a straight line, as a share of the points' that it may replace
 SLACK = 0.1  # metres (two cells) of tolerance around an end of a path
 
 
@@ -242,8 +243,8 @@ def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
     return float(costs.cost[rows, columns].mean()) * length if len(rows) == count else inf
 
 
-def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
-    """Drop points of a path (n, 2) that a straight line can replace; `slack` is a cost ratio."""
+def straighten(costs: Costs, points: Floats) -> Floats:
+    """Drop points of a path (n, 2) that a straight line can replace."""
     steps = np.array([line_cost(costs, a, b) for a, b in pairwise(points)])
     spent = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(steps), steps, 1e6))))
     kept, here, last = [0], 0, len(points) - 1
@@ -253,7 +254,7 @@ def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
             there = here + far
             if (
                 line_cost(costs, points[here], points[there])
-                <= (spent[there] - spent[here]) * slack
+                <= (spent[there] - spent[here]) * AS_CHEAP
             ):
                 reach = there
                 break

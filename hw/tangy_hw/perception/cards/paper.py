@@ -7,7 +7,6 @@ uncertainty.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -31,16 +30,9 @@ RED = 0.15  # share of a cell that must be red
 class PaperReader:
     """Reads cards of one deck as the paper did."""
 
-    def __init__(
-        self,
-        deck: Deck,
-        title: str,
-        deck_seed: int = USUAL_SEED,
-        cards: Sequence[int] = range(1, LAST_CARD + 1),
-    ) -> None:
+    def __init__(self, deck: Deck, title: str, deck_seed: int = USUAL_SEED) -> None:
         self._reader = CardReader(deck, deck_seed)
         self._title = title
-        self._cards = cards
 
     def read(self, picture: Picture) -> CardReading:
         """Read the card in an image (BGR)."""
@@ -58,7 +50,7 @@ class PaperReader:
 
         finder = cv2.SIFT.create(FEATURES)
         descriptors, cards, places = [], [], []
-        for card in self._cards:
+        for card in range(1, LAST_CARD + 1):
             face = draw_face(self._reader.face, card, self._reader.deck_seed, self._title, SCALE)
             points, described = finder.detectAndCompute(face, None)
             descriptors.append(described)
