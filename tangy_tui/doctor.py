@@ -168,13 +168,8 @@ def examine_robot(
     ]
 
 
-def examine_contacts(robot: Robot, seconds: float = TEST_SECONDS) -> list[Finding]:
-    """Call every contact in a robot's file, with a message that says that it is a test.
-
-    Args:
-        robot: the robot with the contacts in its file.
-        seconds: the longest wait for an answer.
-    """
+def examine_contacts(robot: Robot) -> list[Finding]:
+    """Call every contact in a robot's file, with a message that says that it is a test."""
     from tangy_hw.calling import CallNews, call
     from tangy_profiles.contacts import ROLES
     from tangy_tui.text.calls import TEST_CALL, nobody_named, tried_words
@@ -190,7 +185,8 @@ def examine_contacts(robot: Robot, seconds: float = TEST_SECONDS) -> list[Findin
             findings.append(Finding(f"{part} {contact.name}", False, tried_words(contact, "none")))
             continue
         news: list[CallNews] = []
-        call(contact, {"for": role, "robot": robot.title, "text": TEST_CALL}, seconds, news.append)
+        test = {"for": role, "robot": robot.title, "text": TEST_CALL}
+        call(contact, test, TEST_SECONDS, news.append)
         stage = news[-1].stage
         text = tried_words(contact, stage, news[-1].said)
         failed = stage == "failed"

@@ -30,11 +30,9 @@ class PartlyLiveWorld(FaultyWorld):
         injections: Sequence[Injection] = (),
         robot: Robot | None = None,
         live: Callable[[], Health],
-        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Create the world; `live` returns the current readings of the real devices."""
         self._live = live
-        self._clock = clock
         self._simulated: Health = ()
         self._merged: Health = ()
         self._asked = 0.0
@@ -42,7 +40,7 @@ class PartlyLiveWorld(FaultyWorld):
 
     def health(self) -> Health:
         """Return the readings of all devices; real ones replace simulated ones."""
-        simulated, now = super().health(), self._clock()
+        simulated, now = super().health(), time.monotonic()
         if simulated is not self._simulated or now - self._asked > OLDEST:
             real = {reading.device: reading for reading in self._live()}
             self._simulated, self._asked = simulated, now

@@ -80,9 +80,9 @@ class Guest:
             self._take(line)
         return True
 
-    def look_first(self, seconds: float = PATIENCE_SECONDS) -> bool:
-        """Look, and wait up to so many s until the program there has said how its game stands."""
-        there, until = self.look(), time.monotonic() + seconds
+    def look_first(self) -> bool:
+        """Look, and wait a little until the program there has said how its game stands."""
+        there, until = self.look(), time.monotonic() + PATIENCE_SECONDS
         while there and not self.pid and (left := until - time.monotonic()) > 0:
             assert self._socket is not None  # noqa: S101 - somebody is there
             select.select([self._socket], [], [], left)

@@ -55,10 +55,10 @@ def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str
     return " ".join(guessed.split()[:LONGEST])
 
 
-def suggest_name(name: str, which: Callable[[str], str | None] = shutil.which) -> str:
+def suggest_name(name: str) -> str:
     """Return a likely pronunciation of a name, with commas between words; "" if unknown."""
     words = spoken(words_of(clean(name))).split()
-    phones = [next(iter(pronounce(word)), "") or suggest(word, which) for word in words]
+    phones = [next(iter(pronounce(word)), "") or suggest(word) for word in words]
     return ", ".join(phones) if all(phones) else ""
 
 

@@ -381,11 +381,10 @@ def _actions_provider() -> type[Provider]:
     return ActionsProvider
 
 
-def run_app(app: TangyApp, *, mouse: bool = True) -> int:
+def run_app(app: TangyApp) -> int:
     """Run the application and return its exit status."""
     if SERVED not in os.environ:
         for size in ("COLUMNS", "LINES"):  # exported, they hide the window's size
             os.environ.pop(size, None)
-    app.mouse = mouse
-    app.run(mouse=mouse)
+    app.run()
     return app.return_code or 0

@@ -42,15 +42,13 @@ if TYPE_CHECKING:
     from tangy_tui.speech.input import SpeechInput
 
 
-def run_program(
-    workspace: Workspace, *, ascii_only: bool, voice: bool = False, report: str = REPORT
-) -> int:
+def run_program(workspace: Workspace, *, ascii_only: bool, report: str = REPORT) -> int:
     """Open the application on its home screen; return the exit status.
 
     `report` is the command for the report of the games that were played.
     """
     begun = datetime.now(UTC)
-    status = _run(workspace, None, ascii_only, voice=voice, asks_name=True)
+    status = _run(workspace, None, ascii_only, asks_name=True)
     _tell_played(workspace, PLAYED_WORLDS, begun, report, earlier=False)
     return status
 
@@ -281,14 +279,14 @@ def run_map_drive(
     return screen.done, status
 
 
-def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool, voice: bool = False) -> int:
+def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool) -> int:
     """Play the whole demo; return the exit status."""
 
     async def start(program: Program) -> None:
         await tell_story(program, workspace, seed)
         program.leave()
 
-    return _run(workspace, start, ascii_only, voice=voice)
+    return _run(workspace, start, ascii_only)
 
 
 def _run(

@@ -129,15 +129,14 @@ class CommandBar(Vertical):
         """Whether the user is typing: it has the focus, and text."""
         return self._input.has_focus and bool(self._input.value)
 
-    def restore(self, text: str, *, focus: bool = True) -> None:
+    def restore(self, text: str) -> None:
         """Put a text back, selected: typing replaces it, an arrow key keeps it.
 
         Opens the bar, and focuses it.
         """
         self._input.give_back(clean(text)[:LONGEST])
         self.ready()
-        if focus:
-            self._input.focus()
+        self._input.focus()
 
     @property
     def lists(self) -> bool:

@@ -30,7 +30,7 @@ GLYPHS = {
 }
 
 
-def block_rows(label: str, large: bool, *, dark: str = "█") -> list[str]:
+def block_rows(label: str, large: bool) -> list[str]:
     """Draw the letters and digits of a label; `large` doubles width and height."""
     across = 4 if large else 2
     drawn = [""] * ROWS
@@ -41,7 +41,7 @@ def block_rows(label: str, large: bool, *, dark: str = "█") -> list[str]:
                 drawn[row] += " " * across
                 continue
             bits = (glyph[row] >> (COLUMNS - 1 - column) & 1 for column in range(COLUMNS))
-            drawn[row] += "".join((dark if bit else " ") * across for bit in bits) + " " * across
+            drawn[row] += "".join(("█" if bit else " ") * across for bit in bits) + " " * across
     return [row.rstrip().ljust(len(drawn[0])) for row in drawn for _ in range(2 if large else 1)]
 
 
