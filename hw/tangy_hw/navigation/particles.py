@@ -71,8 +71,9 @@ def around(
     return drawn
 
 
-def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
-    x, y, heading = np.floor(np.ascontiguousarray((particles / (width, width, angle)).T))
+def _bins(particles: Floats, angle: float) -> NDArray[np.int64]:
+    """Return the bin of each particle (n, 3), `BIN` m wide and long and `angle` rad in heading."""
+    x, y, heading = np.floor(np.ascontiguousarray((particles / (BIN, BIN, angle)).T))
     columns, headings = y.max() - y.min() + 1, heading.max() - heading.min() + 1
     bins = ((x - x.min()) * columns + (y - y.min())) * headings + (heading - heading.min())
     return np.asarray(bins.astype(np.int64))
@@ -80,7 +81,7 @@ def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
 
 def needed(particles: Floats) -> int:
     """Return how many particles the spread of (n, 3) requires (KLD sampling; D. Fox, 2003)."""
-    bins = np.sort(_bins(particles, BIN, BIN_ANGLE))
+    bins = np.sort(_bins(particles, BIN_ANGLE))
     k = 1 + np.count_nonzero(bins[1:] != bins[:-1])
     if k < 2:
         return FEWEST
@@ -113,7 +114,7 @@ def near(particles: Floats, pose: Pose) -> NDArray[np.bool_]:
 
 def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
     """Return the mean of the most likely cluster of particles, and its covariance (3, 3)."""
-    bins = _bins(particles, BIN, pi / 6)
+    bins = _bins(particles, pi / 6)
     if bins.max() > MOST_BINS:
         _, bins = np.unique(bins, return_inverse=True)
     inside = bins == np.argmax(np.bincount(bins, weights))

@@ -342,7 +342,7 @@ class DeclaredGame:
                 fact = self.declaration.facts[effect.fact]
                 everybody = self.here if effect.does == "add" else self.players
                 for key in _keys(fact, whom, everybody):
-                    self._assign(effect, fact, key)
+                    self._assign(effect, key)
             case "next item":
                 self.round = min(self.round + 1, len(self.order))
                 self.screen = None
@@ -368,7 +368,7 @@ class DeclaredGame:
         self.values.pop(key, None)
         self.values[key] = value
 
-    def _assign(self, effect: Effect, fact: Fact, key: Key) -> None:
+    def _assign(self, effect: Effect, key: Key) -> None:
         if effect.does == "set":
             self._assign_value(key, effect.value)
         elif effect.does == "add":
