@@ -75,16 +75,19 @@ def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> I
     if not replay.timed:
         yield "An older Tangy kept no times within a game: what is given is the time of day alone."
     for moment in replay.moments:
-        yield from moment_lines(moment, replay.timed, activity, name)
+        yield from moment_lines(moment, replay.timed, activity, name, ways=True)
     yield f"{counted(game.steps, 'step')}. {ending_sentence(game)}"
 
 
 def moment_lines(
-    moment: Moment, timed: bool, activity: Activity | None, name: Name
+    moment: Moment, timed: bool, activity: Activity | None, name: Name, *, ways: bool = False
 ) -> Iterator[str]:
-    """Describe one moment of a game, with the time in the game if `timed`, and local time."""
+    """Describe one moment of a game, with the time in the game if `timed`, and local time.
+
+    `ways`: name the ways of asking, which staff do not need.
+    """
     when = _when(moment, timed)
-    first, *more = told_lines(moment, activity, name)
+    first, *more = told_lines(moment, activity, name, ways=ways)
     yield f"{when}  {first}"
     for line in more:
         yield f"{' ' * len(when)}  {line}"
@@ -95,13 +98,19 @@ def _when(moment: Moment, timed: bool) -> str:
     return f"{clock(moment.seconds):>7} {at}" if timed else at
 
 
-def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[str]:
-    """Describe one moment of a game without its time; what is not indented has a mark."""
+def told_lines(
+    moment: Moment, activity: Activity | None, name: Name, *, ways: bool = False
+) -> list[str]:
+    """Describe one moment of a game without its time; what is not indented has a mark.
+
+    `ways`: see `moment_lines`.
+    """
     match moment.what:
         case Done() as done:
-            return _done_lines(done, activity, name)
+            return _done_lines(done, activity, name, ways=ways)
         case AnsweredRequest() as answer:
-            return [f"   {name(answer.person)} {answer_words(answer)} ({answer.strategy})."]
+            way = f" ({answer.strategy})" if ways else ""
+            return [f"   {name(answer.person)} {answer_words(answer)}{way}."]
         case Diagnosed(fault):
             if fault.asks_only:
                 return ["?  Tangy does not know what to do here."]
@@ -129,10 +138,10 @@ def told_lines(moment: Moment, activity: Activity | None, name: Name) -> list[st
             return [f"   {whose}{move_words(move)}.", *said]
 
 
-def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
+def _done_lines(done: Done, activity: Activity | None, name: Name, *, ways: bool) -> list[str]:
     step = step_sentence(
         activity, done.state, done.behaviour, done.target, name,
-        strategy=done.strategy, teacher=done.teacher,
+        strategy=done.strategy if ways else "", teacher=done.teacher,
     )  # fmt: skip
     lines = [step]
     if done.said:

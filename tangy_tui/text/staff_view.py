@@ -182,7 +182,7 @@ def person_words(person: PersonNow) -> str:
     seen = ""
     if person.unvisited is not None:
         just = person.unvisited < STEP_SECONDS
-        seen = "just visited" if just else f"visit {lasting_words(person.unvisited)} ago"
+        seen = "just visited" if just else f"visited {lasting_words(person.unvisited)} ago"
     match person.state:
         case "away":
             return "not here"

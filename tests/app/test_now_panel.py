@@ -185,9 +185,12 @@ def test_a_pause_during_a_step_is_told_to_come_after_it(robot: Robot) -> None:
 def test_the_reason_stands_before_the_visit() -> None:
     waits = PersonNow("ann", "asks", 1, waits=14.0, unvisited=24.0)
     assert (
-        person_words(replace(waits, calls_first=3)) == "asks 10 s, after 3 numbers, visit 20 s ago"
+        person_words(replace(waits, calls_first=3))
+        == "asks 10 s, after 3 numbers, visited 20 s ago"
     )
-    assert person_words(replace(waits, claims=True)) == "first: a claim, asks 10 s, visit 20 s ago"
+    assert (
+        person_words(replace(waits, claims=True)) == "first: a claim, asks 10 s, visited 20 s ago"
+    )
 
 
 def test_the_countdown_stands_still_only_while_a_step_is_carried_out(robot: Robot) -> None:

@@ -196,6 +196,20 @@ def test_actions_of_staff_are_reported_with_names_and_pace(planned: Planned) -> 
     assert told.casefold().endswith(f"{planned.control.by} asked tangy to go to rosa.")
 
 
+def test_only_the_log_names_ways_of_asking(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    planned.play(calls=12)
+    store, activity = planned.workspace.store, planned.workspace.activity
+    (replay,) = read_session(store, read_games(store), {activity.name: activity}, {}).replays
+    told = [line for moment in replay.moments for line in moment_lines(moment, True, activity, str)]
+    asked = tuple(f"with {way}" for way in activity.strategies)
+    assert any("did it" in line for line in told)
+    assert not any(f"({way})" in line for line in told for way in activity.strategies)
+    assert not any(way in line for line in told for way in asked)
+    logged = "\n".join(replay_lines(replay, activity, str))
+    assert any(way in logged for way in asked)
+
+
 def test_staff_read_what_the_group_hears_about_a_claim(
     planned: Planned, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -53,7 +53,7 @@ def test_a_person_of_a_game_with_visits_has_none_yet() -> None:
 def test_a_wait_and_a_visit_of_a_few_seconds_are_told_without_a_number() -> None:
     just = PersonNow("ann", "asks", 1, waits=4.0, unvisited=3.0)
     assert person_words(just) == "asks, just visited"
-    assert person_words(replace(just, waits=14.0, unvisited=24.0)) == "asks 10 s, visit 20 s ago"
+    assert person_words(replace(just, waits=14.0, unvisited=24.0)) == "asks 10 s, visited 20 s ago"
 
 
 def test_a_wait_goes_on_in_the_next_game_while_the_person_still_asks() -> None:
