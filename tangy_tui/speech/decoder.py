@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -208,24 +209,25 @@ class TwoDecoders(_Streaming):
         stop, sure, unlike = self._beside_stops.answer()  # first, while it has a core to itself
         if sure:
             return AcousticEvidence(stop, "", UNKNOWN_MARGIN, 1.0, seconds, stop)
-        heard = self._both(self._usual, pcm, expecting)
+        usual, score = self._both(self._usual, pcm, expecting)
         other = None
         if unlike and expecting == "commands":
             self._beside.ask((pcm, expecting, True))
-            other = OtherHearing(*self._both(self._other, pcm, expecting))
-        words, phrase, margin, guesses = heard
+            heard, other_score = self._both(self._other, pcm, expecting)
+            other = heard if other_score > score else None
+        words, phrase, margin, guesses = astuple(usual)
         return AcousticEvidence(words, phrase, margin, 1.0, seconds, stop, guesses, other)
 
     def _both(
         self, searches: _RequestSearches, pcm: bytes, expecting: Expecting
-    ) -> tuple[str, str, float, tuple[str, ...]]:
-        """Return the words, phrase, margin and guesses of searches; those for words were asked."""
+    ) -> tuple[OtherHearing, float]:
+        """Return what searches hear, and the score of the words, which were asked for before."""
         phrase, garbage = searches.by_grammar(pcm, expecting)
         words, score, guesses = self._beside.answer()
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or an unfinished phrase
-        return words, phrase, margin, guesses
+        return OtherHearing(words, phrase, margin, guesses), score
 
     def _by_words(self, asked: tuple[bytes, Expecting, bool]) -> tuple[str, float, tuple[str, ...]]:
         pcm, expecting, unlike = asked

@@ -172,7 +172,7 @@ class TwoAnswers:
 
     found = HeardStop()
     words = ""
-    other_words = ""
+    other_words, other_score = "", -1.0
     means = False
     asked: ClassVar[list[str]] = []
 
@@ -187,7 +187,7 @@ class TwoAnswers:
         self.asked.append(self.name)
         if self.name == "hear":
             return self.found
-        return (self.other_words if self.means else self.words, -2.0, ())
+        return (self.other_words, self.other_score, ()) if self.means else (self.words, -2.0, ())
 
     def close(self) -> None:
         """Do nothing, as nothing was started."""
@@ -213,16 +213,26 @@ def test_only_an_uncertain_stop_waits_for_the_words(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("unlike", "expecting", "other"),
-    [(True, "commands", "call number"), (False, "commands", None), (True, "answers", None)],
+    ("unlike", "expecting", "score", "other"),
+    [
+        (True, "commands", -1.9, "call number"),
+        (True, "commands", -2.1, None),  # the usual means fit these words better
+        (False, "commands", -1.9, None),
+        (True, "answers", -1.9, None),
+    ],
 )
 def test_requests_of_unlike_voices_are_decoded_again(
-    monkeypatch: pytest.MonkeyPatch, unlike: bool, expecting: Expecting, other: str | None
+    monkeypatch: pytest.MonkeyPatch,
+    unlike: bool,
+    expecting: Expecting,
+    score: float,
+    other: str | None,
 ) -> None:
     monkeypatch.setattr(speech_decoder, "ForkedWorker", TwoAnswers)
     monkeypatch.setattr(TwoAnswers, "found", HeardStop(unlike=unlike))
     monkeypatch.setattr(TwoAnswers, "words", "cool lumber")
     monkeypatch.setattr(TwoAnswers, "other_words", "call number")
+    monkeypatch.setattr(TwoAnswers, "other_score", score)
     decoder = speech_decoder.make_decoder(DecoderVocabulary(("call number",), ("yes",)))
     evidence = decoder.decode(bytes(2 * RATE), expecting)
     assert evidence.words == "cool lumber"
