@@ -168,10 +168,10 @@ class ClaimControls:
         world, claim = self.world, self.with_card(claim)
         if world is None or self._idle or self._no_card(claim) is not None:
             return None
-        holder, numbers = claim.person or world.holder(claim.card), world.numbers_on(claim.card)
-        kind: ClaimKind | None = self._verdict(world, claim.card, holder)
+        holder, kind = self._verdict(world, claim)
+        numbers = world.numbers_on(claim.card)
         if kind == "claim wrong" and numbers is not None and {*world.calling} & {*numbers}:
-            kind = None
+            return ClaimNow(claim.card, holder, None)
         later = kind == "claim wrong" and self._celebrates(world)
         return ClaimNow(claim.card, holder, kind, later=later)
 
@@ -208,12 +208,13 @@ class ClaimControls:
         return not over
 
     @staticmethod
-    def _verdict(world: PlannedGame, card: int, holder: str) -> ClaimKind:
-        wins = world.wins(card)
+    def _verdict(world: PlannedGame, claim: ClaimCard) -> tuple[str, ClaimKind]:
+        """Return who has a card ("" if nobody knows), and its result by the numbers called."""
+        holder, wins = claim.person or world.holder(claim.card), world.wins(claim.card)
         late = bool(wins and world.activity.rules.claim_late and holder)
         if late and world.is_won_before(holder):
-            return "claim late"
-        return "claim right" if wins else "claim wrong"
+            return holder, "claim late"
+        return holder, "claim right" if wins else "claim wrong"
 
     def with_card(self, claim: ClaimCard) -> ClaimCard:
         """Return a claim with the number of the person's card, if it is known and was not given."""
@@ -262,41 +263,44 @@ class ClaimControls:
         claim = self.with_card(claim)
         if (refused := self._no_card(claim)) is not None:
             return [refused]
-        card, person, rules = claim.card, claim.person, world.activity.rules
-        self._unchecked = [one for one in self._unchecked if one.card != card]
-        holder = person or world.holder(card)
-        kind = self._verdict(world, card, holder)
-        words = {"claim right": rules.claim_right, "claim late": rules.claim_late}.get(
-            kind, rules.claim_wrong
-        )
-        self._note(kind, person=holder or "", detail=str(card), calls=self._calls)
+        self._unchecked = [one for one in self._unchecked if one.card != claim.card]
+        card, (holder, kind) = claim.card, self._verdict(world, claim)
+        self._note(kind, person=holder, detail=str(card), calls=self._calls)
         calls, game = len(world.called_now), self._supervision.game.game
         later = kind == "claim wrong" and self._celebrates(world)
         claimed = ClaimNow(card, holder, kind, world.seconds, calls, game, later=later)
         self._keep(claimed)
-        people = (holder,) if holder else ()
-        wrong = [one for one in self._untold if one != card and not world.wins(one)] + [card]
-        if later:  # "let us play on" would deny that somebody has won
-            self._untold = wrong
-            return [StaffNote(kind, str(card), people=people)]
-        if kind == "claim wrong" and more:
-            self._untold = wrong
-            return [StaffNote("claim with others", str(card), people=people)]
-        label = world.patterns.label
         if kind == "claim wrong":
-            self._untold, said = [], joined(words, wrong, label)
-        else:
-            said = words.format(card=card, pattern=label)
+            return [self._tell_wrong(world, claimed, more=more)]
+        rules, wins = world.activity.rules, kind == "claim right"
+        words = rules.claim_right if wins else rules.claim_late
+        said = words.format(card=card, pattern=world.patterns.label)
         world.announce(said)
-        told: list[Result] = [StaffNote(kind, str(card), said, people)]
-        if kind != "claim right":
-            return told
-        told.append(self._supervision.game.change("claimed", person=holder, by=self._by))
+        told = StaffNote(kind, str(card), said, (holder,) if holder else ())
+        return [told, self._go_to_winner(claimed)] if wins else [told]
+
+    def _tell_wrong(self, world: PlannedGame, claimed: ClaimNow, *, more: bool) -> StaffNote:
+        """Tell the group of the cards that do not win, unless it hears of them later."""
+        card, people = claimed.card, (claimed.person,) if claimed.person else ()
+        wrong = [one for one in self._untold if one != card and not world.wins(one)] + [card]
+        if claimed.later or more:  # "let us play on" would deny that somebody has won
+            self._untold = wrong
+            return StaffNote(
+                "claim wrong" if claimed.later else "claim with others", str(card), people=people
+            )
+        self._untold = []
+        said = joined(world.activity.rules.claim_wrong, wrong, world.patterns.label)
+        world.announce(said)
+        return StaffNote("claim wrong", str(card), said, people)
+
+    def _go_to_winner(self, claimed: ClaimNow) -> Event:
+        """Let Tangy go to the person of a claim that wins."""
+        changed = self._supervision.game.change("claimed", person=claimed.person, by=self._by)
         goes = replace(claimed, goes=True)
         self._winning = tuple(goes if one is claimed else one for one in self._winning)
         if self._claimed is claimed:  # staff may have typed another one meanwhile
             self._claimed = goes
-        return told
+        return changed
 
 
 def joined(words: str, cards: Sequence[int], pattern: str) -> str:
