@@ -30,6 +30,7 @@ HELD = {
 WAIT_EXPLANATIONS = {
     "walking": "I let you pass.",
     "standing": "May I pass, please?",
+    "object": "May I pass, please?",  # it may be a person after all
 }
 """The robot's words to people for whom it waits on its way."""
 
@@ -47,13 +48,18 @@ TAKE_CALL_BACK = "Take the last call back"
 WAITS = {
     "walking": "It lets somebody pass.",
     "standing": "It waits: somebody is in the way.",
+    "object": "It waits: something is in the way, or somebody.",
 }
 """Why the robot waits on its way."""
 
 WAITS_FOR_YOU = "waits for your answer"
 """The status while Tangy's question to staff is open."""
 FINDS_ITS_PLACE = "finds its place"
-WAITS_SHORT = {"walking": "lets somebody pass", "standing": "somebody is in the way"}
+WAITS_SHORT = {
+    "walking": "lets somebody pass",
+    "standing": "somebody is in the way",
+    "object": "something is in the way",
+}
 """The same, shorter, for a line with other facts."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from tangy_hw.navigation.surroundings import BlockingPerson
+from tangy_hw.navigation.surroundings import Blocker
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_process.wait_explanations import AFTER_SECONDS, AGAIN_SECONDS, WaitExplanations
 
@@ -12,7 +12,7 @@ WORDS = {"walking": "After you.", "standing": "May I?"}
 LONGEST = 5.0  # s after which every wait must have been explained
 
 
-async def said(yields_to: list[BlockingPerson], *, halted: bool = False) -> list[tuple[float, str]]:
+async def said(yields_to: list[Blocker], *, halted: bool = False) -> list[tuple[float, str]]:
     """Return the spoken sentences with their times, for a wait of 0.1 s in each state."""
     heard: list[tuple[float, str]] = []
     now = 0.0

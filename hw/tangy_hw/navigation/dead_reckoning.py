@@ -17,7 +17,7 @@ from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.planning import Path
 from tangy_hw.navigation.poses import IDENTITY, Floats, compose, relative_pose
 from tangy_hw.navigation.scan_recorder import ScanRecorder
-from tangy_hw.navigation.surroundings import BlockingPerson
+from tangy_hw.navigation.surroundings import Blocker
 from tangy_profiles.health import ERROR, OK, DeviceState, Fact, Reading
 
 NOWHERE: Floats = np.zeros((0, 2))
@@ -29,7 +29,7 @@ class DeadReckoning:
     drives = False
     state: State = "idle"
     path: Path | None = None
-    yields_to: BlockingPerson = ""
+    yields_to: Blocker = ""
     obstacles = unseen = NOWHERE
     particles: Floats = np.zeros((0, 3))
 

@@ -20,7 +20,7 @@ from tangy_hw.navigation.navigator import SPIN, State
 from tangy_hw.navigation.people_guard import WALKS, NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import IDENTITY, Floats
-from tangy_hw.navigation.surroundings import BlockingPerson
+from tangy_hw.navigation.surroundings import Blocker
 from tangy_profiles.health import Fact, Reading
 
 AGAIN_SECONDS = 0.5  # seconds that the robot must be allowed to drive before the goal is sent again
@@ -41,7 +41,7 @@ class ExternalNavigator:
         self.why = ""
         """Reason for `failed` or `blocked`: one sentence."""
         self.path = None
-        self.yields_to: BlockingPerson = ""
+        self.yields_to: Blocker = ""
         """Kind of person it waits for: one who walks into its way."""
         self.tracks: tuple[Track, ...] = ()
         self._tracker, self._limits = PeopleTracker(laser), limits or MotionLimits()

@@ -22,6 +22,7 @@ BEHIND = 0.06  # metres from the visible side of a leg to its centre
 APART = (0.10, 0.45)  # metres between the legs of a person
 EXPECTED = 0.15  # metres from where a person is expected to the centre of their legs
 CHAIR, SOLID = 0.25, 0.06  # legs further apart than CHAIR must be SOLID wide, in m
+CLOSE = 0.6  # metres from the middle of a pair within which other legs count
 WIDEST = 0.9  # metres of width above which a cluster is furniture
 TORSO = 0.22  # metres from the centre of a person to the edge of the torso
 REACH = 0.2  # minimum of metres that torso and toes extend beyond the centre of one leg
@@ -30,13 +31,16 @@ REACH = 0.2  # minimum of metres that torso and toes extend beyond the centre of
 class LegSighting(NamedTuple):
     """A person, leg or object in a scan: its centre in m in the robot's frame.
 
-    `half` is its radius in m; `legs` says whether a pair of legs was seen.
+    `half` is its radius in m; `legs` says whether a pair of legs was seen. `width` is that of the
+    narrower leg in m, and `others` counts other legs close by, if a pair was seen side by side.
     """
 
     x: float
     y: float
     half: float
     legs: bool
+    width: float = 0.0
+    others: int = 0
 
 
 class Cluster(NamedTuple):
@@ -66,10 +70,7 @@ def sightings(
     legs = [one for one in found if LEG[0] <= one.width <= LEG[1]]
     pairs = _pairs(legs, expected)
     paired = {number for pair in pairs for number in pair}
-    people = [
-        LegSighting((legs[a].x + legs[b].x) / 2, (legs[a].y + legs[b].y) / 2, TORSO, True)
-        for a, b in pairs
-    ]
+    people = [_person(legs, a, b) for a, b in pairs]
     single = [
         LegSighting(leg.x, leg.y, REACH, False)
         for number, leg in enumerate(legs)
@@ -112,6 +113,15 @@ def _cluster(points: Floats, far: float, step: float, laser: Pose) -> Cluster:
     out = 1.0 + BEHIND / max(hypot(x, y), BEHIND)
     middle = compose(laser, Pose(float(x * out), float(y * out), 0.0))
     return Cluster(middle.x, middle.y, width)
+
+
+def _person(legs: Sequence[Cluster], a: int, b: int) -> LegSighting:
+    """Return the person whose legs have these numbers."""
+    x, y = (legs[a].x + legs[b].x) / 2, (legs[a].y + legs[b].y) / 2
+    others = sum(
+        hypot(leg.x - x, leg.y - y) < CLOSE for n, leg in enumerate(legs) if n not in (a, b)
+    )
+    return LegSighting(x, y, TORSO, True, min(legs[a].width, legs[b].width), others)
 
 
 def _pairs(legs: list[Cluster], expected: Sequence[tuple[float, float]]) -> list[tuple[int, int]]:

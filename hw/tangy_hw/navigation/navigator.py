@@ -40,7 +40,7 @@ from tangy_hw.navigation.poses import (
 from tangy_hw.navigation.progress import ProgressCheck, StallDetector
 from tangy_hw.navigation.pursuit import Pursuit
 from tangy_hw.navigation.slip_detection import SlipDetector
-from tangy_hw.navigation.surroundings import BlockingPerson, Surroundings
+from tangy_hw.navigation.surroundings import Blocker, Surroundings
 from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
@@ -97,7 +97,7 @@ class Navigator:
         self._around = Surroundings(map_, laser, self.limits)
         self._slip_detector = SlipDetector(laser)
         self._stall_detector, self._progress = StallDetector(), ProgressCheck()
-        self.yields_to: BlockingPerson = ""
+        self.yields_to: Blocker = ""
         """Kind of person it is waiting for, if any."""
         self._pursuit: Pursuit | None = None
         self._given_up: Floats | None = None

@@ -11,7 +11,7 @@ from tangy_hw.navigation.navigator import State
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.planning import Path
 from tangy_hw.navigation.poses import Floats
-from tangy_hw.navigation.surroundings import BlockingPerson
+from tangy_hw.navigation.surroundings import Blocker
 from tangy_profiles.health import Fact, Reading
 
 
@@ -39,7 +39,7 @@ class NavigatorProtocol(Protocol):
         ...
 
     @property
-    def yields_to(self) -> BlockingPerson:
+    def yields_to(self) -> Blocker:
         """Kind of person it is waiting for, if any."""
         ...
 

@@ -2,7 +2,7 @@
 
 Each track is a constant-velocity Kalman filter (Y. Bar-Shalom et al., "Estimation with applications
 to tracking and navigation", 2001, ch. 6) in the odometry frame, which does not jump as the map
-frame does. A scan cannot tell a standing person from a chair, so all objects are tracked;
+frame does. A scan cannot tell for sure a standing person from a chair, so all objects are tracked;
 `person` only affects messages to staff.
 """
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.leg_detection import REACH, TORSO, LegSighting, sightings, turned
+from tangy_hw.navigation.person_evidence import PersonEvidence
 from tangy_hw.navigation.poses import IDENTITY, compose, relative_pose, wrap
 
 ACCELERATION = 3.0  # m/s^2, standard deviation of changes of velocity
@@ -32,8 +33,6 @@ SETTLED, SETTLED_WAY, SETTLED_SECONDS = 1.0, 0.15, 0.9  # standing: age in s; le
 RUNS = 0.25  # m/s above which a track does not count as standing
 RESTS = 0.5  # seconds of standing after which a walker's pace is forgotten: a track may err
 SLOWS = 0.2  # m/s^2, decrease of a walker's remembered pace
-WALKED, WALKED_SECONDS = 0.8, 0.8  # metres and seconds of walking that make a track a person
-LEGS_SHARE, LEGS_SECONDS = 0.7, 2.0  # share of a window in s with two legs that makes a person
 
 
 @dataclass(frozen=True)
@@ -83,9 +82,11 @@ class _Followed:
     unseen: float = 0.0
     stood: float = 0.0
     hidden: bool = False
-    person: bool = False
     pace: float = 0.0
-    past: deque[tuple[float, float, float, bool]] = field(default_factory=deque)
+    evidence: PersonEvidence = field(default_factory=PersonEvidence)
+    off: float = 0.0
+    """Distance of the latest sighting from the predicted position, in m."""
+    past: deque[tuple[float, float, float]] = field(default_factory=deque)
 
     def predict(self, dt: float) -> None:
         step = np.array([[1.0, dt], [0.0, 1.0]])
@@ -99,6 +100,7 @@ class _Followed:
     def correct(self, sighting: LegSighting) -> None:
         noise = (MEASURED if sighting.half > REACH or sighting.legs else MEASURED_LEG) ** 2
         gain = self.covariance[:, 0] / (self.covariance[0, 0] + noise)
+        self.off = hypot(sighting.x - self.state[0, 0], sighting.y - self.state[0, 1])
         self.state = self.state + np.outer(gain, (sighting.x, sighting.y) - self.state[0])
         self.covariance = self.covariance - np.outer(gain, self.covariance[0])
         self.half += 0.3 * (sighting.half - self.half)
@@ -106,34 +108,25 @@ class _Followed:
         self.unseen = 0.0
         self.hidden = False
 
-    def note(self, legs: bool, dt: float) -> None:
+    def note(self, sighting: LegSighting | None, dt: float) -> None:
         """Record the position, and update whether it stands and whether it is a person."""
-        x, y = self.state[0]
-        self.past.append((self.age, float(x), float(y), legs))
-        while self.age - self.past[0][0] > LEGS_SECONDS:
+        x, y = float(self.state[0, 0]), float(self.state[0, 1])
+        self.past.append((self.age, x, y))
+        while self.age - self.past[0][0] > SETTLED_SECONDS:
             self.past.popleft()
-        strays = self._strays(SETTLED_SECONDS)
+        strays = self._strays()
         if self.age > SETTLED and strays < SETTLED_WAY and self._fast < RUNS:
             self.stood += dt
         else:
             self.stood = 0.0
-        walked = self.age >= WALKED_SECONDS and self._way(LEGS_SECONDS) >= WALKED
         slower = max(0.0, self.pace - SLOWS * dt)
         self.pace = 0.0 if self.stood > RESTS else max(self._fast, slower)
-        pairs = sum(one[3] for one in self.past)
-        stands = self.age >= LEGS_SECONDS and pairs >= LEGS_SHARE * len(self.past)
-        self.person |= walked or stands
+        self.evidence.note(self.age, (x, y), sighting, self.off)
 
-    def _way(self, seconds: float) -> float:
-        x, y = self.state[0]
-        then = next(one for one in self.past if self.age - one[0] <= seconds)
-        return hypot(x - then[1], y - then[2])
-
-    def _strays(self, seconds: float) -> float:
+    def _strays(self) -> float:
         """Return its largest distance from its current position lately: pacing is not standing."""
         x, y = self.state[0]
-        lately = (one for one in self.past if self.age - one[0] <= seconds)
-        return max(hypot(x - one[1], y - one[2]) for one in lately)
+        return max(hypot(x - one[1], y - one[2]) for one in self.past)
 
     @property
     def _fast(self) -> float:
@@ -145,7 +138,7 @@ class _Followed:
         if self.stood > 0:
             vx = vy = 0.0
         return Track(float(x), float(y), float(vx), float(vy), self.half, self.age, self.stood,
-                     self.person, self.hidden, self.pace)  # fmt: skip
+                     self.evidence.person, self.hidden, self.pace)  # fmt: skip
 
 
 class PeopleTracker:
@@ -183,7 +176,7 @@ class PeopleTracker:
                 one.correct(found[sighting])
             else:
                 one.hidden = _hidden(one, scan, compose(odometry, self._laser))
-            one.note(sighting is not None and found[sighting].legs, dt)
+            one.note(None if sighting is None else found[sighting], dt)
         self._followed = [
             one
             for one in self._followed

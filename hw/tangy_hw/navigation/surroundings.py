@@ -18,8 +18,8 @@ from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
 from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints, lengths, transform_points
 
-BlockingPerson = Literal["", "walking", "standing"]
-"""Kind of person that the robot waits for: nobody, a walking one, a standing one."""
+Blocker = Literal["", "walking", "standing", "object"]
+"""What the robot waits for: nothing, a person who walks or stands, or probably an object."""
 
 SURE = 0.3  # metres of pose spread up to which points become obstacles
 WALKS = 0.25  # m/s above which a track counts as walking
@@ -112,16 +112,22 @@ class Surroundings:
         around = NearbyPeople((*self._tracks, *self._unconfirmed), self._ends)
         return limit_near_people(twist, around, self._limits)
 
-    def held(self, twist: Twist) -> BlockingPerson:
-        """Return the kind of person for whom it stands or creeps instead; "" if it does not."""
+    def held(self, twist: Twist) -> Blocker:
+        """Return for what it stands or creeps instead; "" if it does not."""
         limited = self.limited(twist)
         if limited == twist or not _creeps(limited):
             return ""
         walkers = self._walkers
-        standing = [one for one in self._tracks if one not in walkers]
-        ends = self._ends[~_near(self._ends, walkers)]
-        without = limit_near_people(twist, NearbyPeople(standing, ends), self._limits)
-        return "standing" if _creeps(without) else "walking"
+        if not _creeps(self._limited_without(walkers, twist)):
+            return "walking"
+        people = [one for one in self._tracks if one.person and one not in walkers]
+        return "object" if _creeps(self._limited_without(walkers + people, twist)) else "standing"
+
+    def _limited_without(self, left_out: Sequence[Track], twist: Twist) -> Twist:
+        """Return the part of a command that may be driven if some tracks were not there."""
+        others = [one for one in self._tracks if one not in left_out]
+        ends = self._ends[~_near(self._ends, left_out)]
+        return limit_near_people(twist, NearbyPeople(others, ends), self._limits)
 
     @property
     def _walkers(self) -> list[Track]:

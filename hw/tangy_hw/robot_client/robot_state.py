@@ -20,9 +20,9 @@ class RobotState:
     control that only a new robot process fixes. `frozen` is for how many s its control was
     frozen, until staff acknowledge it; `held` is the result of the last manual command: ""
     executed, "slow", "stands" or "overridden". `waits` names the late data that it waits for;
-    `pauses` is the number of such waits, and their total s. `yields_to` is the kind of person it
-    waits for: "walking" past, or "standing" in the way. `answered` are the keys of calls
-    answered at the chest screen.
+    `pauses` is the number of such waits, and their total s. `yields_to` says for what it
+    waits: a person "walking" past or "standing" in the way, or probably an "object". `answered`
+    are the keys of calls answered at the chest screen.
     """
 
     number: int = 0

@@ -1,4 +1,4 @@
-"""Tells people whom the robot waits for on its way why it stands."""
+"""Tells people who are in the robot's way why it stands."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 
-from tangy_hw.navigation.surroundings import BlockingPerson
+from tangy_hw.navigation.surroundings import Blocker
 from tangy_hw.robot_process.stop_latch import Preempted
 
 AFTER_SECONDS = 1.0  # of standing for a person until it speaks
@@ -17,15 +17,15 @@ class WaitExplanations:
     """Says why the robot waits, in given sentences."""
 
     def __init__(self, words: Mapping[str, str], says: Callable[[str], Awaitable[object]]) -> None:
-        """Set the sentences, by "walking" and "standing", and the speech function."""
+        """Set the sentences by kind (`Blocker`), and the speech function."""
         self._words, self._says = words, says
-        self._yields_to: BlockingPerson = ""
+        self._yields_to: Blocker = ""
         self._since = 0.0
         self._said: dict[str, float] = {}
         self._saying: asyncio.Task[None] | None = None
 
-    def note(self, yields_to: BlockingPerson, now: float) -> None:
-        """Update the kind of person it waits for, `now` in s; speak after a moment."""
+    def note(self, yields_to: Blocker, now: float) -> None:
+        """Update for what it waits, `now` in s; speak after a moment."""
         if yields_to != self._yields_to:
             self._yields_to, self._since = yields_to, now
         words = self._words.get(yields_to, "")
