@@ -109,6 +109,8 @@ class GameController(HandingOver):
         self.answers = AnswerCollector(supervision)
         """Verifies answers to Tangy's questions; `answer` then carries them out."""
         self._void = void
+        self.beginning = False
+        """Whether a game begins now: a robot first drives to the front."""
         self.going = True
         self.single = False
         self.paused_itself = False
@@ -177,7 +179,13 @@ class GameController(HandingOver):
             past = self._take_past()
             first = past is None and not self.supervision.games
             waits = self.robot.wait_on(self.supervision.store) if first else {}
-            events = self.supervision.begin(past, self.by)
+            if past is None:  # from now on nobody is shown the game before
+                self._watch.begin(self.supervision.world.seconds, waits)
+            self.beginning = past is None
+            try:
+                events = self.supervision.begin(past, self.by)
+            finally:
+                self.beginning = False
             if stopped and not joined:  # before there was a game to log it in
                 self.note("stopped", by=self.stopped_by)
             world = self.supervision.world
@@ -230,7 +238,7 @@ class GameController(HandingOver):
     def view(self) -> StaffView:
         """Return the present state of the game for staff; from any thread, at any time."""
         world = self.supervision.world
-        if self.supervision.over:
+        if self.supervision.over and not self.beginning:
             self._watch.end(world.seconds)
         return self._watch.look(self.plan.scene, world.people, world.seconds, world)
 

@@ -34,6 +34,9 @@ FIRST_BY_CLAIM = "first: a claim"
 VISIT_DUE = "visit is due"
 """Tangy goes to a person who has not asked."""
 OVER = "The game is over."
+BEGINS, NEXT_BEGINS = "The game begins.", "The next game begins."
+BEGINS_NOW = "a game begins"
+"""The stage of such a game on the status line."""
 
 
 def lasting_words(seconds: float) -> str:

@@ -119,6 +119,11 @@ class GamePicture:
             self._spoken = said
             self._screen.query_one(RoomView).say(said)
 
+    def forget(self) -> None:
+        """Show nothing more that Tangy said in the last game, while the next one begins."""
+        self.grounds.clear()
+        self._screen.query_one(RoomView).say("")
+
     def begin(self) -> None:
         """Show the state before the first game."""
         self._show_policy()

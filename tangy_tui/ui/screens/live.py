@@ -35,6 +35,7 @@ from tangy_tui.text.live_news import seated_words
 from tangy_tui.text.missing_devices import missing_words
 from tangy_tui.text.planned_time import after_end_words
 from tangy_tui.text.situations import OVER_NOW
+from tangy_tui.text.staff_view import BEGINS_NOW
 from tangy_tui.text.tablet import screen_words
 from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.panels import KeyLine
@@ -138,6 +139,8 @@ class LiveScreen(LiveStaff):
 
     def _over_words(self) -> str:
         control = self.control
+        if control.beginning:
+            return BEGINS_NOW
         return setting_up_words(control.welcomes) if control.joined else OVER_NOW
 
     async def switch_off(self) -> None:
@@ -151,6 +154,7 @@ class LiveScreen(LiveStaff):
             await self._until_going()
         if self.world.lost:
             self._write(LOOKS_ROUND, "warn")
+        self.picture.forget()
         begun = await super()._begin_game()
         time = self.control.time
         if time.ends is not None and time.ends <= time.clock():
@@ -203,7 +207,7 @@ class LiveScreen(LiveStaff):
         state = self.world.link.state
         if not state.number:
             return
-        if (self._doing() or self._until_call()) != self._seen_doing:
+        if self._short_doing() != self._seen_doing:
             self.show_status()
         if state.frozen and not self._frozen:
             self._write(frozen_words(state.frozen), "bad")
@@ -245,7 +249,7 @@ class LiveScreen(LiveStaff):
 
     def show_status(self) -> None:
         """Show the state of the game, and the keys that have an effect now."""
-        self._seen_doing = self._doing() or self._until_call()
+        self._seen_doing = self._short_doing()
         super().show_status()
         going = self.control.going
         self.query_one(KeyLine).show(
@@ -271,6 +275,11 @@ class LiveScreen(LiveStaff):
         level = self.control.autonomy.level
         autonomy = live_keys.DIAL[level] if level != AUTONOMY[0] else ""
         return self._doing() or self._until_call() or autonomy
+
+    def _short_doing(self) -> str:
+        """Tell what changes the status line without an event."""
+        begins = BEGINS_NOW if self.control.beginning else ""
+        return self._doing() or self._until_call() or begins
 
     def _doing(self) -> str:
         """Describe the robot's current drive, "" if it is not driving."""

@@ -69,6 +69,8 @@ def next_line(shown: ViewSource) -> str:
     control, world = shown.control, shown.world
     if control.joined:
         return sets_up_words(control.welcomes)
+    if control.beginning:
+        return text.NEXT_BEGINS if control.supervision.games else text.BEGINS
     if control.supervision.over:
         if not control.supervision.games:
             return text.PAUSED if control.past is not None else ""
