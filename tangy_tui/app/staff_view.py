@@ -123,12 +123,12 @@ class StaffWatch:
             return self._look(scene, people, now, world)
 
     def _look(self, scene: Scene, people: Sequence[str], now: float, world: object) -> StaffView:
-        now = now if self._ended is None else min(now, self._ended)
-        over = self._ended is not None  # then nobody counts as asking, also who still waits
+        clock, now = now, now if self._ended is None else min(now, self._ended)
+        over = self._ended is not None  # then a wait goes on, also if no request shows it
         for person in [one for one in self._asks if one not in scene.requests and not over]:
             del self._asks[person]
         for person in scene.requests:
-            self._asks.setdefault(person, now)
+            self._asks.setdefault(person, clock)
         planned = world if isinstance(world, PlannedGame) else None
         there = planned is None or planned.arrived
         if scene.place != FRONT and there:
@@ -139,7 +139,11 @@ class StaffWatch:
             scene.called,
             tuple(
                 _with_facts(
-                    _with_plan(self._person(person, scene, now, robot), planned), world, over=over
+                    _with_plan(
+                        self._person(person, scene, (now, clock), robot), planned, over=over
+                    ),
+                    world,
+                    over=over,
                 )
                 for person in people
             ),
@@ -147,7 +151,11 @@ class StaffWatch:
             None if self._paused is None or self._ended is not None else now - self._paused,
         )
 
-    def _person(self, person: str, scene: Scene, now: float, robot: tuple[str, str]) -> PersonNow:
+    def _person(
+        self, person: str, scene: Scene, times: tuple[float, float], robot: tuple[str, str]
+    ) -> PersonNow:
+        """Describe a person at a time in the game, and at the time now, in s."""
+        now, clock = times
         asks = self._asks.get(person) if person in scene.requests else None
         visited = self._visited.get(person)
         state: PersonState = "asks" if person in scene.requests else "plays"
@@ -160,17 +168,17 @@ class StaffWatch:
             person,
             state,
             turn,
-            None if asks is None else now - asks,
+            None if asks is None else clock - asks,
             None if visited is None else now - visited,
             scene.doing.get(person, ""),
         )
 
 
-def _with_plan(person: PersonNow, world: PlannedGame | None) -> PersonNow:
+def _with_plan(person: PersonNow, world: PlannedGame | None, *, over: bool) -> PersonNow:
     """Add whether a person has won, and why one who asks is first or has to wait for calls."""
     if world is not None and person.id in world.has_won:
         person = replace(person, has_won=True)
-    if world is None or not person.turn:
+    if world is None or not person.turn or over:
         return person
     calls = world.tracker.calls_first if person.turn == 1 else 0
     claims, unasked = person.id in world.vouched, person.id in world.visiting

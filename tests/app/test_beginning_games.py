@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.state import ActivityState
-from tangy_tui.app.game_commands import AskFor, EndGame
+from tangy_tui.app.game_commands import AskFor, EndGame, GoesAway
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.staff_view import BEGINS, NEXT_BEGINS, OVER, person_words
 from tangy_tui.ui.screens.play_view import ViewSource, next_line
@@ -47,3 +47,29 @@ def test_while_a_game_begins_nothing_of_the_last_one_is_shown(
     assert seen == [(BEGINS, 3.0), (NEXT_BEGINS, 3.0)]
     assert shown(robot)[1] == 0.0
     assert not robot.control.beginning
+
+
+def test_who_still_waits_is_shown_between_two_games(robot: Robot) -> None:
+    robot.control.begin()
+    robot.next(2)
+    robot.control.apply(AskFor("user3"))
+    robot.control.view()
+    robot.control.apply(EndGame())
+    robot.link.time += 130.0
+    told = {one.id: person_words(one) for one in robot.control.view().people}
+    assert told["user3"] == "asks 2 min" and "asks" not in told["user1"]
+    robot.control.begin()
+    told = {one.id: person_words(one) for one in robot.control.view().people}
+    assert told["user3"] == "asks 2 min"
+
+
+def test_who_was_visited_or_has_left_is_not_shown_as_waiting(robot: Robot) -> None:
+    robot.control.begin()
+    robot.next(2)
+    robot.control.apply(AskFor("user3"))
+    robot.next(2)  # Tangy goes there
+    robot.link.sign(2)
+    robot.control.apply(EndGame())
+    assert [one.id for one in robot.control.view().people if one.turn] == ["user2"]
+    robot.control.apply(GoesAway("user2"))
+    assert not [one for one in robot.control.view().people if one.turn]

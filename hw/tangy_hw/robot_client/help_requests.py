@@ -95,6 +95,13 @@ class HelpRequestTracker:
         return tuple(person for person, _ in signs if person not in aside)
 
     @property
+    def left(self) -> tuple[str, ...]:
+        """People who still ask after a game, in the order in which they asked."""
+        signs = {one: at for one, at in self.signs.items() if one in self.raised}
+        words = {one: at for one, at in self._by_word.items() if one not in self._met}
+        return tuple(sorted(asks := signs | words, key=lambda one: asks[one]))
+
+    @property
     def by_word(self) -> tuple[str, ...]:
         """People for whom staff asked, or who asked before an interruption, in this order."""
         return tuple(self._by_word)

@@ -153,10 +153,13 @@ class LivePlan(PlannedGame):
 
     @property
     def asking(self) -> tuple[str, ...]:
-        """The queue, and behind it people whose signs the game takes in after its present step."""
-        queue = self.queue
+        """The queue, and behind it people whose signs the game takes in after its present step.
+
+        After a game, it is who still waits.
+        """
         if self.over:
-            return ()
+            return tuple(one for one in self.requests.left if one not in self.away)
+        queue = self.queue
         known = {*queue, *self.away}
         return *queue, *(one for one in self.requests.raised if one not in known)
 
