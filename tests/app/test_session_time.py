@@ -30,6 +30,7 @@ from tangy_tui.text.planned_time import end_words, left_words, time_facts, time_
 from tangy_tui.text.report import how_long_words
 from tangy_tui.text.watching import view_lines
 from tests.app.test_interruption import Robot
+from tests.support.planned_games import Planned
 
 BEGAN = datetime(2026, 3, 2, 9, 22, tzinfo=UTC)
 END = BEGAN + timedelta(minutes=40)
@@ -139,7 +140,7 @@ def test_staff_plan_more_time_in_a_game_after_it_and_between_games(
     (noted,) = robot.control.apply(PlanTime(20))
     assert noted.kind == "time planned"  # type: ignore[union-attr]
     ends = clock.now + timedelta(minutes=20)
-    assert robot.control.time.ends == ends
+    assert robot.control.time.now == SessionTime(BEGAN, ends)
     read = read_session(workspace.store, read_games(workspace.store), {}, {})
     assert [one.ends for one in read.times] == [None, ends]
     assert how_long_words(read).endswith(f"; planned until {end_words(ends, clock.now)}")
@@ -170,6 +171,12 @@ def test_logs_of_older_programs_count_from_the_first_game(
     begun("one", 1, 30)
     clock.later(20)
     begun("two", 2, 30)
+    begun("other", 3, 10)
+    assert session_time(workspace.store, "other") == session_time(workspace.store, "one")
+    people = tuple(workspace.names)
+    workspace.store.append(GameBeginning(game="new", number=4, activity="bingo", people=people))
+    time = session_time(workspace.store, "new")  # of another run: of its seed, too
+    assert time == SessionTime(clock.now, None)
     damaged = StaffAction(game="two", did="time planned", by="", detail="soon")
     time = session_time(workspace.store, "two")
     assert time is not None and time.ends == BEGAN + timedelta(minutes=30)
@@ -233,7 +240,7 @@ def test_a_time_of_day_is_the_next_one_and_never_a_past_one() -> None:
 @pytest.mark.parametrize(
     ("now", "until", "minutes"),
     [((14, 0), (3, 30), 90), ((11, 45), (1, 0), 75), ((9, 30), (10, 15), 45),
-     ((14, 0), (15, 30), 90)],
+     ((14, 0), (15, 30), 90), ((9, 0), (3, 0), 360), ((23, 0), (5, 0), 360)],
 )  # fmt: skip
 def test_a_time_of_day_may_be_in_the_afternoon(
     now: tuple[int, int], until: tuple[int, int], minutes: int
@@ -244,7 +251,17 @@ def test_a_time_of_day_may_be_in_the_afternoon(
 
 
 @pytest.mark.parametrize(
-    ("now", "until"), [((16, 0), (3, 30)), ((10, 0), (9, 30)), ((14, 0), (0, 10))]
+    ("now", "until"),
+    [
+        ((16, 0), (3, 30)),
+        ((10, 0), (9, 30)),
+        ((14, 0), (0, 10)),
+        ((9, 0), (3, 1)),
+        ((23, 0), (5, 1)),
+        ((10, 0), (10, 0)),
+        ((20, 0), (12, 30)),
+        ((8, 0), (0, 30)),
+    ],
 )
 def test_a_time_of_day_that_was_is_not_one_of_tomorrow(
     now: tuple[int, int], until: tuple[int, int]
@@ -252,6 +269,18 @@ def test_a_time_of_day_that_was_is_not_one_of_tomorrow(
     then = datetime(2026, 3, 2, *now).astimezone()
     with pytest.raises(TangyError, match="already"):
         planned_end(PlanTime(until=until), then, None)
+
+
+@pytest.mark.parametrize(
+    ("before", "ends"),
+    [(None, 10), (timedelta(minutes=-50), 10), (timedelta(minutes=5), 15)],
+)
+def test_more_time_counts_from_the_planned_end_or_from_now_if_that_is_over(
+    before: timedelta | None, ends: int
+) -> None:
+    was = None if before is None else END + before
+    assert planned_end(PlanTime(10, more=True), END, was) == END + timedelta(minutes=ends)
+    assert planned_end(PlanTime(10), END, was) == END + timedelta(minutes=10)
 
 
 def test_a_plan_made_while_the_time_is_read_counts(
@@ -293,3 +322,10 @@ def test_the_plan_of_the_log_is_offered_again(workspace: Workspace) -> None:
     session(workspace)
     first = [one.record for one in workspace.store.events(GameBeginning)]
     assert first[-1].plan == GamePlan(pace=first[-1].pace, minutes=40)
+
+
+def test_the_time_of_a_simulated_game_cannot_be_planned(planned: Planned) -> None:
+    planned.begin(GamePlan())
+    assert planned.do(PlanTime(20)) == ["not in a simulation"]
+    acts = [event.record.did for event in planned.workspace.store.events(StaffAction)]
+    assert "time planned" not in acts
