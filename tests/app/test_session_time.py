@@ -214,6 +214,9 @@ def test_the_panel_tells_since_when_the_time_is_up() -> None:
         ("5 minutes longer", PlanTime(5, more=True)),
         ("plan until 15:40", PlanTime(until=(15, 40))),
         ("play until 9:05", PlanTime(until=(9, 5))),
+        ("plan until 23:59", PlanTime(until=(23, 59))),
+        ("plan 600 minutes", PlanTime(600)),
+        ("plan 1 minute", PlanTime(1)),
         ("no time limit", PlanTime()),
         ("play for two lines", None),
         ("10 minutes", None),
@@ -223,7 +226,11 @@ def test_words_plan_the_time(said: str, planned: PlanTime | None) -> None:
     assert read_time(said) == planned
 
 
-@pytest.mark.parametrize("said", ["plan", "plan a picnic", "plan until 25:00", "plan 9999 minutes"])
+@pytest.mark.parametrize(
+    "said",
+    ["plan", "plan a picnic", "plan until 24:00", "plan until 9:60", "plan 601 minutes",
+     "plan 0 minutes", "another 0 minutes"],
+)  # fmt: skip
 def test_an_unclear_plan_is_explained(said: str) -> None:
     with pytest.raises(TangyError):
         read_time(said)
