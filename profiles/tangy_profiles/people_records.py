@@ -148,11 +148,15 @@ class RecordingsForgotten(EventRecord):
 
 @kind("microphone checked")
 class MicrophoneChecked(EventRecord):
-    """The result of a microphone check; invalid settings count as none."""
+    """The result of a microphone check; invalid settings count as none.
+
+    `teacher` is who spoke; "" if that is not known.
+    """
 
     source: str
     settings: Any = None
     figures: Any = None
+    teacher: str = ""
 
 
 @kind("microphone check forgotten")

@@ -14,6 +14,7 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Store
 from tangy_tui.speech.calibration import SHIFTS, CalibrationResult
 from tangy_tui.speech.evidence import USUAL, EvidenceSettings
+from tangy_tui.speech.other_voices import is_voice
 
 
 def microphone(source: str) -> str:
@@ -29,11 +30,16 @@ def microphone(source: str) -> str:
     return f"{'socket' if kind == 'socket' else 'file'} {digest}"
 
 
-def keep(store: Store, source: str, chosen: CalibrationResult) -> None:
-    """Store the calibration of a microphone."""
-    settings = {"garbage": chosen.settings.garbage, "shift": chosen.settings.shift}
+def keep(store: Store, source: str, chosen: CalibrationResult, teacher: str = "") -> None:
+    """Store the calibration of a microphone, and the voice of the teacher who spoke."""
+    settings = asdict(chosen.settings)
+    del settings["mode"]
     figures = asdict(chosen.figures)
-    store.append(MicrophoneChecked(source=microphone(source), settings=settings, figures=figures))
+    store.append(
+        MicrophoneChecked(
+            source=microphone(source), settings=settings, figures=figures, teacher=teacher
+        )
+    )
 
 
 def forget(store: Store, source: str) -> bool:
@@ -49,40 +55,46 @@ def is_checked(store: Store, source: str) -> bool:
     return _stored(store, source) is not None
 
 
-def settings_for(store: Store, source: str | None, mode: str = "tiers") -> EvidenceSettings:
+def settings_for(
+    store: Store, source: str | None, mode: str = "tiers", teacher: str = ""
+) -> EvidenceSettings:
     """Return the settings of a microphone: those of its last check, or else the defaults.
 
     Args:
         store: the log with the checks.
         source: its name, as in `tangy_hw.audio.sources`; None for no particular one.
         mode: one of LISTENING.
+        teacher: who speaks: the voice is that of their last check with this microphone.
 
     Raises:
         TangyError: there is no such mode.
     """
     if mode not in LISTENING:
         raise TangyError(plain(f"--mode {mode[:40]!r} is not known; {nearest(mode, LISTENING)}"))
-    stored = None if source is None else _stored(store, source)
+    stored = None if source is None else _stored(store, source, teacher)
     return replace(stored or USUAL, mode=mode)
 
 
-def _stored(store: Store, source: str) -> EvidenceSettings | None:
+def _stored(store: Store, source: str, teacher: str = "") -> EvidenceSettings | None:
     found: EvidenceSettings | None = None
-    name = microphone(source)
+    name, voice = microphone(source), ""
     for event in store.events(MicrophoneChecked, MicrophoneForgotten):
         match event.record:
-            case MicrophoneChecked(source=of, settings=settings) if of == name:
+            case MicrophoneChecked(source=of, settings=settings, teacher=who) if of == name:
                 found = _read(settings)
+                if who == teacher:
+                    voice = found.voice if found else ""
             case MicrophoneForgotten(source=of) if of == name:
-                found = None
-    return found
+                found, voice = None, ""
+    return found and replace(found, voice=voice)
 
 
 def _read(written: Any) -> EvidenceSettings | None:
     """Read stored settings; return None if they are invalid."""
     try:
         settings = replace(USUAL, garbage=float(written["garbage"]), shift=float(written["shift"]))
+        voice = str(written.get("voice", ""))
     except (KeyError, TypeError, ValueError):
         return None
     fits = 0 < settings.garbage <= 10 and SHIFTS[0] <= settings.shift <= SHIFTS[-1]
-    return settings if fits else None
+    return replace(settings, voice=voice if is_voice(voice) else "") if fits else None

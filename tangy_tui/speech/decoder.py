@@ -37,7 +37,7 @@ from tangy_tui.speech.language import (
     words_of,
 )
 from tangy_tui.speech.noise_reduction import cleared, surrounded
-from tangy_tui.speech.other_voices import moved_means
+from tangy_tui.speech.other_voices import both_means
 from tangy_tui.speech.pocketsphinx_search import (
     NO_PATH,
     add_model,
@@ -131,7 +131,7 @@ class _Streaming:
 class _RequestSearches:
     """Words by an open n-gram model, and a grammar with a garbage branch."""
 
-    def __init__(self, texts: _RequestTexts, means: bytes | None = None) -> None:
+    def __init__(self, texts: _RequestTexts, means: bytes | None) -> None:
         self.words = make_search(texts.words, bestpath=True, active=1500, means=means)
         self._grammar = make_search(texts.own_words, bestpath=False, active=1000, means=means)
         for name, model in texts.models.items():
@@ -192,9 +192,11 @@ class TwoDecoders(_Streaming):
         self._guesses = bool(asked)
         if asked:
             texts.models[SENTENCES] = open_model((*phrases, *asked), few, AMONG_SENTENCES)
-        self._usual, self._other = _RequestSearches(texts), _RequestSearches(texts, moved_means())
+        usual, other = both_means(wanted.settings.voice)
+        self._usual, self._other = _RequestSearches(texts, usual), _RequestSearches(texts, other)
         self._search = self._usual.words
-        self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game)
+        means = usual, other
+        self._stops = StopDecoder(wanted.stops, wanted.no_stops, few, known, wanted.game, means)
         self._beside = ForkedWorker(self._by_words)
         self._beside_stops = ForkedWorker(self._stops.hear)
 
@@ -313,6 +315,16 @@ def _pronunciations(
         **{word: tuple(ways) for word, ways in found.items()},
         **{word: tuple(ways) for word, ways in own.items() if word in wanted},
     }
+
+
+def spelt(texts: Sequence[str], own: Mapping[str, Sequence[str]]) -> str:
+    """Return the dictionary of the words of some texts; those without a pronunciation are missing.
+
+    Args:
+        texts: the texts.
+        own: the pronunciations given by activity and people.
+    """
+    return dictionary(_pronunciations(words_of(texts), own))
 
 
 def _heard(

@@ -19,13 +19,15 @@ class EvidenceSettings:
     """Recognition settings, which depend on the microphone and the room.
 
     `mode` is one of LISTENING. `garbage` is the weight of all other speech, against 1 for the
-    commands; `shift` is added to the acceptance threshold: above 0 is stricter.
+    commands; `shift` is added to the acceptance threshold: above 0 is stricter. `voice` is that of
+    the person who speaks, if it is known (`other_voices.means_of`).
     """
 
     ONLY: ClassVar[bool] = True
     mode: str = "tiers"
     garbage: float = 0.43
     shift: float = 0.0
+    voice: str = ""
 
 
 USUAL = EvidenceSettings()

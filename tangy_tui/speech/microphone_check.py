@@ -1,6 +1,7 @@
 """A microphone check of a minute: the quiet room, some commands, some other sentences.
 
-No sound is stored, only figures and settings.
+No sound is stored, only figures and settings, among them how the speaker's voice differs from those
+of the acoustic model.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import tomllib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import Literal, Protocol, TypeAlias
@@ -21,6 +22,7 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.labels import UtteranceLabel
 from tangy_tui.language.lexicon import Lexicon
 from tangy_tui.language.stop_sentence import stops
+from tangy_tui.language.words import spoken, words_of
 from tangy_tui.speech.calibration import (
     WEIGHTS,
     CalibrationPrompt,
@@ -105,6 +107,9 @@ class CheckRecogniser(Protocol):
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
         """Split a recording at its pauses."""
+
+    async def voice(self, said: Sequence[tuple[bytes, str]]) -> str:
+        """Return the voice of a person who read sentences; "" if the usual model fits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -343,11 +348,17 @@ class MicrophoneCheck:
     async def _find(self, room: float, sounds: Sequence[bytes]) -> CheckResult:
         """Decode the utterances, with one weight or with all of them, and choose the settings."""
         self._tell(CheckStep("works out"))
+        read = [
+            (pcm, spoken(words_of(one.text)))
+            for pcm, one in zip(sounds, self._asked, strict=True)
+            if pcm
+        ]
+        voice = await self._recogniser.voice(read)
         scores: dict[float, list[CalibrationScore]] = {}
         words: dict[float, list[str | None]] = {}
         for weight in sorted(WEIGHTS, key=lambda weight: weight != USUAL.garbage):
-            settings = EvidenceSettings(garbage=weight)
-            if weight != USUAL.garbage:
+            settings = EvidenceSettings(garbage=weight, voice=voice)
+            if settings != USUAL:
                 await self._recogniser.start(wanted(self._phrasebook, settings, self._phrases))
             heard = [await self._decoded(pcm) for pcm in sounds]
             words[weight] = [
@@ -361,15 +372,16 @@ class MicrophoneCheck:
             if spare(scores[USUAL.garbage]):
                 break
         chosen = choose(scores)
-        voice = loudness(b"".join(sounds), LOUD)
+        chosen = replace(chosen, settings=replace(chosen.settings, voice=voice))
+        loud = loudness(b"".join(sounds), LOUD)
         figures = chosen.figures
         return CheckResult(
             room,
-            voice,
+            loud,
             tuple(zip(self._asked, words[chosen.settings.garbage], strict=True)),
             chosen,
             figures.parted and figures.others > 0,
-            tuple(advice(room, voice, sounds, figures.perfect)),
+            tuple(advice(room, loud, sounds, figures.perfect)),
         )
 
     async def _decoded(self, pcm: bytes) -> AcousticEvidence:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import base64
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, DecoderVo
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.speech.worker")
 START_SECONDS = 30.0  # timeout for loading the models: 0.8 s on an idle machine
+VOICE_SECONDS = 120.0  # timeout of a voice: 4 s on an idle machine
 DECODE_SECONDS = 30.0  # timeout of an utterance: 0.2 s on an idle machine
 STALLED_SECONDS = 2.0  # without CPU time, after which a decoding worker counts as hung
 LOOK_SECONDS = 0.1
@@ -153,6 +154,24 @@ class Recogniser:
         return [
             pcm[2 * round(begin * RATE) : 2 * round(end * RATE)] for begin, end in answer["found"]
         ]
+
+    async def voice(self, said: Sequence[tuple[bytes, str]]) -> str:
+        """Return the voice of a person who read sentences (see `voice_adaptation.voice_of`).
+
+        Args:
+            said: their sound, and their words in the decoder's spelling.
+
+        Raises:
+            SpeechUnavailable: as for `hear`.
+        """
+        read = [(base64.b64encode(pcm).decode(), text) for pcm, text in said]
+        async with self._turn:
+            try:
+                await self._ready()
+                answer = await self._ask({"said": read}, VOICE_SECONDS)
+            except _WorkerDied as how:
+                raise SpeechUnavailable(f"The speech worker ended {how}.") from None
+        return str(answer["voice"])
 
     async def close(self) -> None:
         """End the worker, even if it is busy."""

@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 from tangy_tui.language.stop_sentence import likelihood, prepare, stops
 from tangy_tui.speech.language import dictionary, open_model, words_of
 from tangy_tui.speech.noise_reduction import cleared
-from tangy_tui.speech.other_voices import moved_means
 from tangy_tui.speech.pocketsphinx_search import add_model, likeliest, make_search
 
 SHARE = 0.05  # of everyday words
@@ -28,6 +27,7 @@ EACH_WORD = 0.08  # likelihood that a stop needs for each word of the best path
 FEWEST, MOST = 3, 8  # words that count
 ACTIVE = 1500
 FITS = -3.8  # score per frame of the best path below which the means of other voices are tried
+UNLIKE = 0.1  # more than the usual score, from which requests are decoded with other means, too
 ACCENTS = {
     "stop": ("S T AO P", "S T AH P"),
     "stopped": ("S T AO P T",),
@@ -41,7 +41,7 @@ Known = Mapping[str, Sequence[str]]
 class HeardStop(NamedTuple):
     """The sentence that stops the robot ("" if none), and whether it is certain.
 
-    `unlike` says that the means of other voices fit the sound better than the usual ones.
+    `unlike` says that the means of other voices fit the sound clearly better than the usual ones.
     """
 
     sentence: str = ""
@@ -63,6 +63,7 @@ class StopDecoder:
         everyday: Mapping[str, float],
         known: Known,
         game: Sequence[str] = (),
+        means: tuple[bytes | None, bytes | None] = (None, None),
     ) -> None:
         """Build the decoder; without a text that has pronunciations it finds nothing.
 
@@ -72,6 +73,7 @@ class StopDecoder:
             everyday: the probabilities of everyday words.
             known: the pronunciations of words.
             game: the words of the activity's title.
+            means: those of the model, and those for sound that fits them badly.
         """
         self._game = frozenset(game)
         texts, others = _sayable(texts, known), _sayable(others, known)
@@ -82,8 +84,9 @@ class StopDecoder:
         said = {word: (*known[word], *ACCENTS.get(word, ())) for word in words}
         prepare()  # before the first utterance has to wait
         spoken, model = dictionary(said), open_model((*others, *texts), everyday, SHARE)
-        self._search = make_search(spoken, bestpath=True, active=ACTIVE)
-        self._other = make_search(spoken, bestpath=True, active=ACTIVE, means=moved_means())
+        self._search, self._other = (
+            make_search(spoken, bestpath=True, active=ACTIVE, means=one) for one in means
+        )
         for search in (self._search, self._other):
             add_model(search, "all", model)
 
@@ -97,7 +100,9 @@ class StopDecoder:
         if heard.sure or score >= FITS:
             return heard
         others, other_score = likeliest(self._other, pcm, "all")
-        return self._judged(others)._replace(unlike=True) if other_score > score else heard
+        if other_score <= score:
+            return heard
+        return self._judged(others)._replace(unlike=other_score > score + UNLIKE)
 
     def _judged(self, guesses: tuple[str, ...]) -> HeardStop:
         """Return the stop among the likeliest sentences, best first."""

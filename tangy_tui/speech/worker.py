@@ -14,6 +14,8 @@ Run as `python -m tangy_tui.speech.worker`, with one JSON object per line:
                                                  that are part of it or came before it
     {"id": 3, "pieces": "..."}                   base64 of a whole recording
     {"id": 3, "found": [[0.5, 1.7]]}             the start and end of its utterances, in s
+    {"id": 4, "said": [["...", "go to"]]}        base64 of sentences that were read, and words
+    {"id": 4, "voice": "usual ..."}              the voice (`voice_adaptation.voice_of`)
     {"id": 3, "error": "One sentence."}          instead of any answer
 
 Sound between two utterances is ignored. The process ends when its input closes; what the C library
@@ -56,6 +58,7 @@ class Worker:
     def __init__(self, write: Callable[[dict[str, Any]], None]) -> None:
         self._write = write
         self.decoder: Any = None
+        self._wanted: DecoderVocabulary | None = None
         self._id: Any = None
         self._expecting: Expecting = "commands"
         self._pcm = bytearray()
@@ -103,8 +106,10 @@ class Worker:
             case {"pieces": str(encoded)}:
                 found = [(round(begin, 3), round(end, 3)) for begin, end in pieces(_sound(encoded))]
                 self._write({"id": id, "found": found})
+            case {"said": list(said)}:
+                self._write({"id": id, "voice": self._voice(said)})
             case _:
-                raise RequestRefused("A request must hold wanted, begin, pcm, end or pieces.")
+                raise RequestRefused("A request must hold wanted, begin, pcm, end, pieces or said.")
 
     def _build(self, wanted: dict[str, Any]) -> list[str]:
         from tangy_tui.speech.decoder import NoPronunciation, make_decoder
@@ -118,8 +123,18 @@ class Worker:
             raise RequestRefused(str(reason)) from None
         except InvalidValue as why:
             raise RequestRefused(f"What is wanted cannot be read: it {why}.") from None
+        self._wanted = read
         self.urgent = frozenset(read.urgent)
         return list(self.decoder.left_out)
+
+    def _voice(self, said: list[Any]) -> str:
+        from tangy_tui.speech.decoder import spelt
+        from tangy_tui.speech.voice_adaptation import KnownSound, voice_of
+
+        if self._wanted is None:
+            raise RequestRefused("The phrases must come before the sound.")
+        known = [KnownSound(_sound(str(pcm)), str(text)) for pcm, text in said]
+        return voice_of(known, spelt([one.text for one in known], self._wanted.pronunciations))
 
     def _begin(self, id: Any, expecting: Any, *, endpoint: bool) -> None:
         if self.decoder is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, assert_never
 
 if TYPE_CHECKING:
@@ -173,10 +173,14 @@ def _settings(checked: CheckResult, mic: str) -> list[str]:
     usual = checked.chosen.usual
     if not checked.parted:
         return []
-    if checked.chosen.settings == USUAL:
-        return [f"The usual settings suit this microphone. They are stored for {mic}."]
+    settings = checked.chosen.settings
+    learnt = ["Your voice differs from those that Tangy knows, so it has learnt yours."]
+    learnt = learnt if settings.voice else []
+    if replace(settings, voice="") == USUAL:
+        return [f"The usual settings suit this microphone. They are stored for {mic}.", *learnt]
     return [
         f"With the usual settings: {usual.understood} understood, {usual.offered} offered, "
         f"{usual.taken} taken for one.",
         f"Other settings suit this microphone better. They are stored for {mic}.",
+        *learnt,
     ]

@@ -91,7 +91,7 @@ class Listening:
             self.mic,
             phrasebook,
             settings=settings_for(
-                workspace.store, self.mic, self.mode or workspace.activity.listening
+                workspace.store, self.mic, self.mode or workspace.activity.listening, who
             ),
             recorder=recorder_for(workspace, who) if self.record else None,
             hands_free=self.hands_free,

@@ -41,16 +41,20 @@ def check(
     listed: Annotated[
         bool, typer.Option("--list", help="Print what to say, and check nothing.")
     ] = False,
+    teacher: Annotated[
+        str | None, typer.Option(help="Who speaks, so that Tangy knows their voice.")
+    ] = None,
     activity: ActivityName = "",
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Check a microphone, and adapt Tangy to it.
+    """Check a microphone, and adapt Tangy to it and to your voice.
 
-    It takes a minute. Tangy keeps the settings for this microphone and room.
+    It takes a minute. Tangy keeps the settings for this microphone and room, and how your voice
+    differs from those that it knows. It uses that whenever you teach or are on duty.
 
-    Be quiet for 3 seconds, then say what is shown: six commands, three other sentences. Nothing
-    of it is kept but the settings. A WAV is taken for what you say: record 3 seconds of quiet,
+    Be quiet for 3 seconds, then say what is shown: six commands, three other sentences. Tangy keeps
+    no sound. A WAV is taken for what you say: record 3 seconds of quiet,
     then what --list prints, in that order, with a second of quiet after each.
 
     The exit status is 1 if too little was understood, so that nothing is stored, and 2 if the
@@ -59,6 +63,7 @@ def check(
     from tangy_hw.audio.sources import open_source
     from tangy_tui.app.microphones import forget as forget_check
     from tangy_tui.app.microphones import keep
+    from tangy_tui.app.teacher_profile import teacher_name
 
     with open_workspace(data, activity, REGISTERED, write=not listed) as workspace:
         if listed:
@@ -75,7 +80,8 @@ def check(
         checked = asyncio.run(_run(workspace, source, as_json))
         stored = checked.parted
         if stored:
-            keep(workspace.store, mic, checked.chosen)
+            who = teacher_name(teacher, workspace.store.folder)
+            keep(workspace.store, mic, checked.chosen, who)
         if as_json:
             print_json({"source": mic, "stored": stored, **checked_document(checked)})
         else:

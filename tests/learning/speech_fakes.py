@@ -189,6 +189,9 @@ for line in sys.stdin.buffer:
         end()
     elif "pieces" in request:
         write({"id": request["id"], "found": plan.get("found", [])})
+    elif "said" in request:
+        words = [text for _, text in request["said"]]
+        write({"id": request["id"], "voice": "usual " + " ".join(words)})
 """
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -22,6 +24,7 @@ from tangy_tui.app.microphones import forget, keep, microphone, settings_for
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.labels import UtteranceLabel
 from tangy_tui.language.lexicon import Lexicon
+from tangy_tui.language.words import spoken, words_of
 from tangy_tui.speech import microphone_check
 from tangy_tui.speech.calibration import (
     SHIFTS,
@@ -47,9 +50,11 @@ from tangy_tui.speech.microphone_check import (
     MicrophoneCheck,
     to_say,
 )
-from tangy_tui.text.mic_check import reason_words
+from tangy_tui.speech.other_voices import SIZE, STREAMS, voice_text
+from tangy_tui.text.mic_check import checked_lines, reason_words
 from tests.support.append_body import append_body
 
+VOICE = voice_text("usual", np.zeros((STREAMS, SIZE, 1 + SIZE)))
 COMMAND, OTHER = (
     CalibrationPrompt("call number", UtteranceLabel("call number")),
     CalibrationPrompt("tea", None),
@@ -150,6 +155,24 @@ class TestStore:
         assert settings_for(store, "socket") == USUAL
         assert not forget(store, "socket")
 
+    def test_the_voice_of_each_teacher_is_kept(self, store: Store) -> None:
+        voiced = replace(self.CHOSEN, settings=replace(self.CHOSEN.settings, voice=VOICE))
+        keep(store, "arecord", voiced, "ann")
+        keep(store, "arecord", self.CHOSEN, "bob")
+        assert settings_for(store, "arecord", teacher="ann") == voiced.settings
+        for teacher in ("bob", "cleo", ""):
+            assert settings_for(store, "arecord", teacher=teacher) == self.CHOSEN.settings
+        assert settings_for(store, "socket", teacher="ann") == USUAL
+        keep(store, "arecord", self.CHOSEN, "ann")
+        assert settings_for(store, "arecord", teacher="ann") == self.CHOSEN.settings
+
+    @pytest.mark.parametrize("voice", ["usual", "mine AAAA", VOICE[:-4], 3, None])
+    def test_an_invalid_voice_is_ignored(self, store: Store, voice: object) -> None:
+        settings = {"garbage": 0.9, "shift": -0.5, "voice": voice}
+        body = {"source": "arecord", "settings": settings, "teacher": "ann"}
+        append_body(store, "microphone checked", body)
+        assert settings_for(store, "arecord", teacher="ann") == self.CHOSEN.settings
+
     def test_an_unknown_mode_is_refused(self, store: Store) -> None:
         with pytest.raises(TangyError, match="tiers"):
             settings_for(store, None, "teirs")
@@ -173,14 +196,18 @@ class TestStore:
 class Hears:
     """A recogniser: an utterance of n samples is the n-th text; zeros are no voice."""
 
-    def __init__(self, texts: list[str]) -> None:
+    def __init__(self, texts: list[str], voice: str = "") -> None:
         self.texts = texts
+        self.known = voice
         self.said = b""
         self.speaking: Callable[[], None] = lambda: None
         self.weights: list[float] = []
+        self.voices: list[str] = []
+        self.read: list[str] = []
 
     async def start(self, wanted: DecoderVocabulary) -> None:
         self.weights.append(wanted.settings.garbage)
+        self.voices.append(wanted.settings.voice)
 
     async def hear(
         self,
@@ -198,6 +225,10 @@ class Hears:
 
     async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
         return AcousticEvidence(self.texts[pcm[0] - 1], "", 0.5, 1.0, 1.0)
+
+    async def voice(self, said: Sequence[tuple[bytes, str]]) -> str:
+        self.read = [text for _, text in said]
+        return self.known
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
         return [pcm[place : place + 2] for place in range(0, len(pcm), 2)]
@@ -310,6 +341,17 @@ class TestChecking:
         assert checked.chosen.figures.perfect
         assert [words for _, words in checked.heard] == [a.text for a in asked]
 
+    async def test_the_commands_are_decoded_with_the_voice_that_was_learnt(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
+    ) -> None:
+        pcm = b"".join(bytes([number, 0]) for number in range(1, len(asked) + 1))
+        hears = Hears([one.text for one in asked], VOICE)
+        checked = await self.check(Recording("a.wav", pcm), activity, people, asked, hears=hears)
+        assert checked.chosen.settings == EvidenceSettings(voice=VOICE)
+        assert hears.read == [spoken(words_of(one.text)) for one in asked]
+        assert hears.voices == ["", VOICE]
+        assert any("learnt yours" in line for line in checked_lines(checked, "arecord"))
+
     async def test_a_missed_phrase_is_asked_for_once_more(
         self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
@@ -408,6 +450,7 @@ class TestChecking:
         asked: list[CalibrationPrompt],
         told: list[CheckNews] | None = None,
         patience: float = microphone_check.PATIENCE,
+        hears: Hears | None = None,
     ) -> CheckResult:
         def tell(news: CheckNews) -> None:
             if told is not None:
@@ -416,7 +459,7 @@ class TestChecking:
                 source.told(news)
 
         book = Phrasebook(activity, people)
-        hears = Hears([a.text for a in asked])
+        hears = hears or Hears([a.text for a in asked])
         async with asyncio.timeout(20):
             return await MicrophoneCheck(source, book, hears, asked, tell, patience=patience).run()
 

@@ -160,6 +160,12 @@ class TestHearing:
         assert len(found) == 6_000
         assert {len(piece) for piece in found} == {320}
 
+    async def test_the_voice_of_a_person_is_learnt_from_sentences(self, begin: Begin) -> None:
+        heard = begin()
+        await heard.recogniser.start(WANTED)
+        said = [(WHOLE, "call number"), (WHOLE, "tea")]
+        assert await heard.recogniser.voice(said) == "usual call number tea"
+
     async def test_words_without_pronunciation_are_reported(self, begin: Begin) -> None:
         heard = begin({"left_out": ["xhqzr"]})
         await heard.recogniser.start(WANTED)

@@ -26,7 +26,8 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.steering import IN_GAMES, WHILE_TEACHING, steering_texts
 from tangy_tui.language.stop_sentence import STOPS, stops
 from tangy_tui.learning.verification import Reply, Say, StopCommand
-from tangy_tui.speech import transcription
+from tangy_tui.speech import decoder as speech_decoder
+from tangy_tui.speech import transcription, voice_adaptation
 from tangy_tui.speech import worker as room
 from tangy_tui.speech.evidence import (
     LONGEST,
@@ -48,6 +49,7 @@ from tangy_tui.speech.understanding import (
     understand,
     wanted,
 )
+from tangy_tui.speech.voice_adaptation import KnownSound
 from tangy_tui.speech.worker import LARGEST_PIECE, STANDS, Worker
 from tests.hw.sounds import wav
 from tests.learning.speech_fakes import FakeRecogniser, sound
@@ -356,6 +358,9 @@ class LetterDecoder:
                 self.so_far.append(letter)
         return " ".join(self.so_far)
 
+    def close(self) -> None:
+        """Do nothing, as nothing was started."""
+
     def begin(self, expecting: Expecting) -> None:
         self.so_far = []
 
@@ -405,6 +410,24 @@ class TestWorker:
     def test_invalid_requests_are_answered_with_an_error(self, ask: Ask, request_: object) -> None:
         (answer_,) = ask(request_)
         assert "must hold" in answer_["error"]
+
+    def test_a_voice_is_learnt_from_sound_and_its_words(
+        self, ask: Ask, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def learn(known: list[KnownSound], words: str) -> str:
+            return f"{[(one.pcm, one.text) for one in known]} {words}"
+
+        monkeypatch.setattr(voice_adaptation, "voice_of", learn)
+        read = {"id": 4, "said": [[said(b"abcd")["pcm"], "hello xhqzr"]]}
+        assert "before" in ask(read)[0]["error"]
+        monkeypatch.setattr(speech_decoder, "make_decoder", lambda _: LetterDecoder())
+        wanted_ = {"phrases": ["hello"], "pronunciations": {"xhqzr": ["EH K S"]}}
+        _, answer_ = ask({"id": 3, "wanted": wanted_}, read)
+        assert answer_["id"] == 4
+        sound, words = answer_["voice"].split("] ")
+        assert sound == "[(b'abcd', 'hello xhqzr')"
+        assert words.splitlines()[0] == "hello HH AH L OW"
+        assert words.splitlines()[-1] == "xhqzr EH K S"
 
     @pytest.mark.parametrize(
         "odd", [{}, {"phrases": 1}, {"phrases": ["a"], "settings": {"loud": 1}}]

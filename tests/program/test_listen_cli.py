@@ -360,4 +360,5 @@ class TestCheckingAMicrophone:
         assert done.returncode == 0
         said = " ".join(done.stdout.split())
         assert "Be quiet for 3 seconds" in said
-        assert "Nothing of it is kept but the settings." in said
+        assert "Tangy keeps no sound." in said
+        assert "how your voice differs" in said
