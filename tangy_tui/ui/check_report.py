@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -19,11 +18,12 @@ from tangy_tui.text.faults import recovery_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.phrases import items
 from tangy_tui.text.rules import UNRULED, UNSEEN, UNTRIED, together_words
+from tangy_tui.ui.printed_table import titled_table
 
 
 def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
     """Print the shipped activities, by their names on the command line."""
-    table = _table(
+    table = titled_table(
         "Activities", "name", "title", "stages", "situations", "behaviours", "strategies"
     )
     for name, activity in activities:
@@ -63,7 +63,7 @@ def print_rules(rules: Rules) -> None:
     if rules.mistakes:
         return
     console = Console(highlight=False)
-    table = _table(
+    table = titled_table(
         f"{rules.file}: {counted(len(rules.rules), 'fault rule')}, the first that matches counts",
         "", "fault", "recovery", "looks at",
     )  # fmt: skip
@@ -103,12 +103,3 @@ def _print_left(console: Console, what: str, words: Sequence[str]) -> None:
 def _verdict(file: str, well: bool, words: str) -> Text:
     mark = Text("ok       " if well else "hints    ", style="green" if well else "yellow")
     return mark.append(plain(f"{file}: {words}"), style="")
-
-
-def _table(title: str, *columns: str) -> Table:
-    table = Table(
-        title=Text(plain(title)), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False
-    )
-    for column in columns:
-        table.add_column(column, overflow="fold")
-    return table

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich import box
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from tangy_profiles.reading import plain
@@ -26,6 +24,7 @@ from tangy_tui.text.people import (
     tally,
 )
 from tangy_tui.text.times import on_day
+from tangy_tui.ui.printed_table import titled_table
 
 
 def print_people(records: Sequence[PersonSummary]) -> None:
@@ -33,7 +32,7 @@ def print_people(records: Sequence[PersonSummary]) -> None:
     console = Console(highlight=False)
     strategies = tuple(records[0].beliefs)
     title = f"{COMPLIED}, in {records[0].world} games"
-    table = _table(title, "person", *strategies)
+    table = titled_table(title, "person", *strategies)
     for record in records:
         cells = (_short(record, strategy) for strategy in strategies)
         table.add_row(Text(plain(record.person.name)), *cells)
@@ -46,7 +45,7 @@ def print_people(records: Sequence[PersonSummary]) -> None:
 def print_person(record: PersonSummary) -> None:
     """Print one person in detail."""
     console = Console(highlight=False)
-    table = _table(
+    table = titled_table(
         f"{plain(record.person.name)} ({record.person.id}), in {record.world} games",
         "way of asking", "did it", "average", "90% interval", "chance to be best", "",
     )  # fmt: skip
@@ -71,7 +70,7 @@ def print_person(record: PersonSummary) -> None:
 def print_history(record: PersonSummary) -> None:
     """Print the requests to a person, game by game."""
     console = Console(highlight=False)
-    table = _table(HISTORY, "no.", "when", "strategy", "what came of it")
+    table = titled_table(HISTORY, "no.", "when", "strategy", "what came of it")
     for game in record.games:
         where = "game of" if game.id is not None else "outside of a game,"
         table.add_row("", Text(f"{where} {on_day(game.begun)}", style="bold"), "", "")
@@ -100,10 +99,3 @@ def _mark(record: PersonSummary, strategy: str) -> str:
 
 def _print_legend(console: Console, mark: str) -> None:
     console.print(Text(BEST + mark, style="dim"))
-
-
-def _table(title: str, *columns: str) -> Table:
-    table = Table(title=Text(title), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
-    for column in columns:
-        table.add_column(column, overflow="fold")
-    return table

@@ -33,6 +33,7 @@ from tangy_tui.text.people import COMPLIED
 from tangy_tui.text.quality import quality_words
 from tangy_tui.text.situations import agreement_words, conflict_lines
 from tangy_tui.text.times import local_time
+from tangy_tui.ui.printed_table import titled_table
 
 T = TypeVar("T")
 
@@ -103,7 +104,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
     """Print the decision for every situation, the learnt effects, and warnings."""
     console = Console(highlight=False)
     exact = agreement_words(activity, policy)
-    table = _table(
+    table = titled_table(
         f"Policy {policy.name} ({counted(len(policy.demonstrations), 'demonstration')}, {exact}; "
         f"digest {policy.digest[:8]})",
         "", "situation", "behaviour", "votes", "shown",
@@ -130,7 +131,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
     found = prove_coverage(activity, policy)
     for line in () if found is None else proof_words(activity, found):
         console.print(Text(line))
-    table = _table("What follows", "behaviour", "what was seen afterwards")
+    table = titled_table("What follows", "behaviour", "what was seen afterwards")
     for behaviour in activity.behaviours:
         words, variables = activity.behaviour_words(behaviour), effects.values.get(behaviour)
         if variables is None:
@@ -145,7 +146,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
 
 def print_policies(kept: Sequence[PolicyLearnt]) -> None:
     """Print the learnt policies, the latest last."""
-    table = _table("Policies", "name", "learnt", "demonstrations", "digest")
+    table = titled_table("Policies", "name", "learnt", "demonstrations", "digest")
     for one in kept:
         count = str(len(one.demonstrations))
         table.add_row(Text(plain(one.name)), local_time(one.at), count, one.digest[:8])
@@ -158,7 +159,9 @@ def print_demonstrations(rows: Sequence[ListRow], none: str) -> None:
     if not rows:
         console.print(Text(none), soft_wrap=True)
         return
-    table = _table("Demonstrations", "", "teacher", "date", "steps", "shown", "state", "notes")
+    table = titled_table(
+        "Demonstrations", "", "teacher", "date", "steps", "shown", "state", "notes"
+    )
     for row in rows:
         style = "" if row.state == "in use" else "dim"
         notes = Text("; ".join(quality_words(row.notes)))
@@ -174,7 +177,7 @@ def print_comparison(
 ) -> None:
     """Print two policies side by side, and mark the rows that differ."""
     console = Console(highlight=False)
-    table = _table("", "", "situation", plain(a.name), plain(b.name))
+    table = titled_table("", "", "situation", plain(a.name), plain(b.name))
     for row in rows:
         style = "" if row.same else "bold red"
         mark = Text("" if row.same else "!", style=style)
@@ -195,7 +198,7 @@ def _does(activity: Activity, decision: Decision, also: Sequence[str] = ()) -> s
 def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Beliefs]) -> None:
     """Print the rows of Table II for the played games, and the posteriors after them."""
     console = Console(highlight=False)
-    table = _table(
+    table = titled_table(
         f"{counted(tally.games, 'game')}, {counted(tally.steps, 'behaviour')}",
         "situation", "behaviour", "instances", "success",
     )  # fmt: skip
@@ -216,7 +219,7 @@ def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Belief
 
 def _people_table(workspace: Workspace, beliefs: Mapping[str, Beliefs]) -> Table:
     strategies = tuple(workspace.activity.strategies)
-    table = _table(COMPLIED, "person", *strategies)
+    table = titled_table(COMPLIED, "person", *strategies)
     for person, profile in beliefs.items():
         best = probability_best(profile)
         leads = leading(best)
@@ -230,11 +233,4 @@ def _people_table(workspace: Workspace, beliefs: Mapping[str, Beliefs]) -> Table
                 for s in strategies
             ),
         )
-    return table
-
-
-def _table(title: str, *columns: str) -> Table:
-    table = Table(title=Text(title), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
-    for column in columns:
-        table.add_column(column, overflow="fold")
     return table
