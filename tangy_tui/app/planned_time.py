@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED
 from tangy_profiles.past_game import PastGame
-from tangy_profiles.session_time import SessionTime
+from tangy_profiles.session_time import SessionTime, session_time
+from tangy_profiles.staff_records import StaffAction
 from tangy_tui.app.game_commands import PlanTime
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.monitoring.supervision import Supervision
@@ -22,8 +23,9 @@ class PlannedTime:
 
     def __init__(self, supervision: Supervision, past: PastGame | None, by: str) -> None:
         """Read the time of a supervision's games, or of the game that it resumes first."""
-        self._supervision, self._log, self._by = supervision, supervision.game.log, by
+        self._supervision, self._store, self._by = supervision, supervision.store, by
         self._resumes = "" if past is None else past.beginning.game
+        self._times = dict[str, SessionTime]()  # by game
 
     @property
     def _game(self) -> str:
@@ -32,7 +34,10 @@ class PlannedTime:
     @property
     def now(self) -> SessionTime | None:
         """The planned time; None before the first game."""
-        return self._log.session_time(self._game) if self._game else None
+        game, times = self._game, self._times  # another thread may plan, and begin new ones
+        if game and game not in times and (found := session_time(self._store, game)) is not None:
+            times[game] = found
+        return times.get(game)
 
     @property
     def ends(self) -> datetime | None:
@@ -41,7 +46,7 @@ class PlannedTime:
 
     def clock(self) -> datetime:
         """Return the time by the clock of the log, which the planned time is compared with."""
-        return self._log.now()
+        return self._store.now()
 
     @property
     def left(self) -> float | None:
@@ -56,12 +61,21 @@ class PlannedTime:
             return StaffNote("not in a simulation")
         now = self.clock()
         ends = planned_end(command, now, time.ends)
-        running = not self._supervision.over
-        self._log.plan_time(self._game, ends, self._by, timed=running)
+        self.end_at(ends)
         if ends is None:
             return StaffNote("time planned")
         minutes = round((ends - now).total_seconds() / 60)
         return StaffNote("time planned", ends.isoformat(), str(minutes))
+
+    def end_at(self, ends: datetime | None) -> None:
+        """Log until when staff plan the session; None: without a limit."""
+        game = self._supervision.game
+        until = "" if ends is None else ends.astimezone(UTC).isoformat(timespec="seconds")
+        at = None if self._supervision.over else game.log.seconds
+        self._store.append(
+            StaffAction(game=self._game, did="time planned", by=self._by, detail=until, seconds=at)
+        )
+        self._times = {}
 
 
 def planned_end(command: PlanTime, now: datetime, before: datetime | None) -> datetime | None:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
-
 from tangy_profiles.game_records import AnswerNotClear, GameBeginning, GameStep
 from tangy_profiles.past_game import PastGame
 from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
-from tangy_profiles.session_time import SessionTime, session_time
-from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import Acted
@@ -23,7 +19,6 @@ class GameLog:
         self._began = 0.0
         self._numbers = dict[str, int]()
         self._read = 0  # the last event of which the number is known
-        self._times = dict[str, SessionTime]()
 
     @property
     def seconds(self) -> float:
@@ -37,29 +32,6 @@ class GameLog:
                 self._read = event.seq
                 self._numbers.setdefault(event.record.game, len(self._numbers) + 1)
         return self._numbers[game]
-
-    def session_time(self, game: str) -> SessionTime | None:
-        """Return the planned time of the session of a game; None if no such game has begun."""
-        times = self._times  # another thread may plan meanwhile, and begin new ones
-        if game not in times and (found := session_time(self._store, game)) is not None:
-            times[game] = found
-        return times.get(game)
-
-    def plan_time(self, game: str, ends: datetime | None, by: str, *, timed: bool) -> None:
-        """Log until when staff plan the session of a game; None: without a limit.
-
-        The action is `timed` by the clock of the game, unless the game is over.
-        """
-        until = "" if ends is None else ends.astimezone(UTC).isoformat(timespec="seconds")
-        at = self.seconds if timed else None
-        self._store.append(
-            StaffAction(game=game, did="time planned", by=by, detail=until, seconds=at)
-        )
-        self._times = {}
-
-    def now(self) -> datetime:
-        """Return the time by the clock of the log."""
-        return self._store.now()
 
     def begin(self) -> None:
         """Start the clock of a game."""

@@ -16,13 +16,13 @@ from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.session_time import SessionTime, session_time
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
+from tangy_tui.app import planned_time
 from tangy_tui.app.game_commands import EndGame, GoOn, Pause, PlanTime
 from tangy_tui.app.game_view import view_of
 from tangy_tui.app.planned_time import planned_end
 from tangy_tui.app.time_grammar import asks_time, read_time
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.inquiries import Inquiries
-from tangy_tui.interaction import game_log
 from tangy_tui.monitoring.games import read_games
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.text.control import noted_words
@@ -293,20 +293,18 @@ def test_more_time_counts_from_the_planned_end_or_from_now_if_that_is_over(
 def test_a_plan_made_while_the_time_is_read_counts(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    control = session(workspace).control
-    game, log = control.supervision.game.game, control.supervision.game.log
+    time = session(workspace).control.time
 
     def read(store: Store, game: str) -> SessionTime | None:
         before = session_time(store, game)
-        monkeypatch.setattr(game_log, "session_time", session_time)
-        log.plan_time(game, None, "ann", timed=False)  # by another thread
+        monkeypatch.setattr(planned_time, "session_time", session_time)
+        time.end_at(None)  # by another thread
         return before
 
-    control.time.plan(PlanTime(20))
-    monkeypatch.setattr(game_log, "session_time", read)
-    log.session_time(game)
-    again = log.session_time(game)
-    assert again is not None and again.ends is None
+    time.plan(PlanTime(20))
+    monkeypatch.setattr(planned_time, "session_time", read)
+    assert time.ends is not None
+    assert time.now is not None and time.ends is None
 
 
 @pytest.mark.parametrize(

@@ -24,8 +24,7 @@ async def test_a_game_after_the_planned_time_says_so_and_how_to_plan_more(
     async with run(app=program, size=(120, 40)) as pilot:
         await paused_after(pilot, link, 2)
         control = live(pilot).control
-        log, over = control.supervision.game.log, datetime.now(UTC) - timedelta(minutes=3)
-        log.plan_time(control.supervision.game.game, over, "Nina", timed=True)
+        control.time.end_at(datetime.now(UTC) - timedelta(minutes=3))
         await until_shown(pilot, lambda: "time is up since" in screen_text(pilot.app))
         await pilot.press("f7")
         more = "press : and type: plan 20 minutes"
