@@ -70,6 +70,7 @@ def test_who_was_visited_or_has_left_is_not_shown_as_waiting(robot: Robot) -> No
     robot.next(2)  # Tangy goes there
     robot.link.sign(2)
     robot.control.apply(EndGame())
+    robot.world.over = True  # as after the last behaviour
     assert [one.id for one in robot.control.view().people if one.turn] == ["user2"]
     robot.control.apply(GoesAway("user2"))
     assert not [one for one in robot.control.view().people if one.turn]

@@ -158,7 +158,7 @@ class LivePlan(PlannedGame):
         After a game, it is who still waits.
         """
         if self.over:
-            return tuple(one for one in self.requests.left if one not in self.away)
+            return tuple(one for one in self.requests.left if one not in self.plan_away)
         queue = self.queue
         known = {*queue, *self.away}
         return *queue, *(one for one in self.requests.raised if one not in known)
