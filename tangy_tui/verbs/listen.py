@@ -74,6 +74,7 @@ def listen(
     named none, noise or speech, or lies in a folder of that name.
     """
     from tangy_tui.app.microphones import is_checked, settings_for
+    from tangy_tui.app.teacher_profile import teacher_name
 
     if bool(files) + (bench is not None) + (text is not None) + forget_recordings != 1:
         raise TangyError(WHAT_TO_LISTEN_TO)
@@ -81,7 +82,8 @@ def listen(
         if forget_recordings:
             _forget(workspace, as_json)
             return
-        settings = settings_for(workspace.store, mic, mode or workspace.activity.listening)
+        who = teacher_name(None, workspace.store.folder)
+        settings = settings_for(workspace.store, mic, mode or workspace.activity.listening, who)
         if mic is not None and not is_checked(workspace.store, mic):
             check = f"tangy mic check --mic {shlex.quote(mic)}{as_given(data)}"
             say_notices([f"{mic} was never checked, so the usual settings are used: {check}"])

@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tangy_hw.audio.meter import NO_SOUND_SECONDS
+from tangy_profiles.people_records import MicrophoneChecked
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace, data_folder
 from tangy_tui.speech import transcription
@@ -20,6 +22,7 @@ from tangy_tui.speech.calibration import CalibrationResult, SeparationCounts
 from tangy_tui.speech.evidence import RATE, DecoderVocabulary, EvidenceSettings
 from tangy_tui.speech.loudness import LOUD, loudness
 from tangy_tui.speech.microphone_check import PATIENCE, CheckResult, MicrophoneCheck
+from tangy_tui.speech.other_voices import SIZE, STREAMS, voice_text
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.recordings import consent, consented
 from tangy_tui.text.command_line import WHAT_TO_LISTEN_TO
@@ -28,6 +31,7 @@ from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
 from tests.support.append_body import append_body
 
+VOICE = voice_text("usual", np.zeros((STREAMS, SIZE, 1 + SIZE)))
 Tangy = Callable[..., CompletedProcess[str]]
 Tell = Callable[[int, list[dict[str, Any]]], None]
 
@@ -200,6 +204,32 @@ def test_default_settings_of_an_unchecked_microphone_are_reported(
     )
 
 
+@pytest.mark.parametrize(("teacher", "voice"), [("ann", VOICE), ("bob", "")])
+def test_the_voice_of_the_teacher_is_used(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, teacher: str, voice: str
+) -> None:
+    heard: list[str] = []
+
+    def listen(files: object, book: object, settings: EvidenceSettings, tell: object) -> list[Any]:
+        heard.append(settings.voice)
+        return []
+
+    def ears(mic: str, book: object, *, settings: EvidenceSettings, **_: object) -> None:
+        heard.append(settings.voice)
+
+    monkeypatch.setattr(transcription, "listen", listen)
+    monkeypatch.setattr("tangy_tui.speech.input.SpeechInput", ears)
+    monkeypatch.setenv("USER", teacher)
+    with Store.open(tmp_path / "data") as store:
+        settings = {"garbage": 0.9, "shift": 0.5, "voice": VOICE}
+        body = {"source": "arecord", "settings": settings, "teacher": "ann"}
+        append_body(store, "microphone checked", body)
+    tangy("listen", "a.wav", "--mic", "arecord", "--data", tmp_path / "data")
+    with closing(Workspace(tmp_path / "data")) as workspace:
+        hearing.Listening("arecord").ears(workspace, workspace.phrasebook(), teacher, sound=0)
+    assert heard == [voice, voice]
+
+
 def test_the_question_for_consent_explains_how_to_delete(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -342,6 +372,24 @@ class TestCheckingAMicrophone:
         assert " dB" not in done.stdout
         assert "5 of 6 commands understood; no other sentence was heard." in done.stdout
         assert json.loads(tangy(*check, "--json").stdout)["room_db"] is None
+
+    @pytest.mark.slow
+    def test_the_voice_is_stored_for_the_teacher_who_spoke(
+        self, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        figures = SeparationCounts(6, 6, 0, 3, 0)
+        chosen = CalibrationResult(EvidenceSettings(voice=VOICE), figures, figures)
+
+        async def run(check: MicrophoneCheck) -> CheckResult:
+            return CheckResult(-60.0, -30.0, (), chosen, True, ())
+
+        monkeypatch.setattr(MicrophoneCheck, "run", run)
+        (tmp_path / "a.wav").write_bytes(wav(pcm(tone(0.2))))
+        check = ("mic", "check", "--mic", tmp_path / "a.wav", "--data", tmp_path / "data")
+        assert "so it has learnt yours" in tangy(*check, "--teacher", "ann").stdout
+        with Store.open(tmp_path / "data", write=False) as store:
+            (checked,) = (event.record for event in store.events(MicrophoneChecked))
+        assert (checked.teacher, checked.settings["voice"]) == ("ann", VOICE)
 
     def test_forgetting_reports_whether_settings_existed(
         self, tangy: Tangy, tmp_path: Path
