@@ -43,6 +43,7 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.plan_grammar import read_planned
+from tangy_tui.app.request_grammar import read_request, tells_a_fall, without_courtesy
 from tangy_tui.language.steering import steering_of
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.verification import Reply
@@ -128,12 +129,15 @@ def read_command(
     Raises:
         TangyError: they resemble a command, but a part of it is wrong; one sentence.
     """
-    said = " ".join(text.split()).strip(" .!")
+    whole = " ".join(text.split()).strip(" .!").casefold()
+    if whole in FIXED or (whole := steering_of(text) or whole) in FIXED:
+        return FIXED[whole]
+    said = without_courtesy(text).strip(" .!")
     words = said.casefold()
-    if words in FIXED or (words := steering_of(text) or words) in FIXED:
-        return FIXED[words]
-    if words == "stop" or stops(text, game):
+    if words == "stop" or stops(text, game) or tells_a_fall(text, find_person):
         return StopRobot()
+    if words in FIXED:
+        return FIXED[words]
     if (planned := read_planned(said, find_person, rules)) is not None:
         return planned
     if dial := _DIAL.fullmatch(words):
@@ -244,7 +248,8 @@ def command_reader(
         command = read_command(text, find_person=find_person, game=title, rules=activity.rules)
         if command is not None or asks():
             return command
-        return read_end(text, title) or read_help(text, find_person)
+        request = read_end(text, title) or read_request(text)
+        return request or read_help(text, find_person)
 
     return read
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.game_questions import AsksGame, read_game_question
 from tangy_tui.app.time_grammar import asks_time
 
 Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "patterns"]
@@ -125,7 +126,8 @@ class AsksWhoWon:
     """A question about everybody who has won in the game."""
 
 
-Question: TypeAlias = AsksAbout | AsksHowLong | AsksWhoWaits | AsksWhoWon
+Question: TypeAlias = AsksAbout | AsksGame | AsksHowLong | AsksWhoWaits | AsksWhoWon
+
 
 _SHORT = {
     "n't": " not",
@@ -184,7 +186,7 @@ LONGEST_NAME = 4  # words
 
 
 def read_question(text: str, find_person: Callable[[str], str]) -> Question | None:
-    """Parse words as a question about the time, who waits, who has won, or people's turns.
+    """Parse words as a question about the game, the time, who waits, who has won, or turns.
 
     Return None if they are none.
 
@@ -196,13 +198,16 @@ def read_question(text: str, find_person: Callable[[str], str]) -> Question | No
         TangyError: it asks about a person, but nobody is called so; one sentence.
     """
     words = " ".join(text.replace("\u2019", "'").split()).strip(" ?.!,")
+    asked = read_game_question(text)
+    if asked is not None and asked.topic == "clock":
+        return asked
     if asks_time(text):
         return AsksHowLong()
     if _WHO_WAITS.fullmatch(words.casefold()):
         return AsksWhoWaits()
     if _WHO_WON.fullmatch(words.casefold()):
         return AsksWhoWon()
-    return _about_people(words, find_person)
+    return asked or _about_people(words, find_person)
 
 
 def _about_people(words: str, find_person: Callable[[str], str]) -> AsksAbout | None:

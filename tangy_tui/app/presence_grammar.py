@@ -14,12 +14,16 @@ _COMES = (
 )
 _GOES = (
     rf"{_IS} (?:gone|going|leaving|away|out)|{_NOT} here|{_HAS} (?:gone|left)"
-    r"| (?:(?:has|have|had) to|must) (?:go|leave)| (?:left|leaves|leave|went|goes|go)"
+    r"| (?:(?:has|have|had|needs?|wants?) to|must) (?:go|leave)| (?:left|leaves|leave|went|goes|go)"
+    r"| (?:comes?|joins?|(?:will|is going to|are going to) (?:come|join)|(?:is|are) coming)"
+    r"(?: in| back)? (?:later|afterwards|another time|next time)"
+    r"| needs? (?:the|a) (?:toilet|bathroom|loo|restroom|lavatory|wc)"
 )
 _SOON = r"(?: both| all| just| already)?"
 _WHERE = (
     r"(?: (?:back|in|out|home|away|now|too|again|already|early|to bed|to sleep|for a (?:walk|while"
-    r"|moment)|for today|to the (?:toilet|bathroom|loo)|(?:to|into) (?:his|her|their) rooms?))*"
+    r"|moment)|for today|to the (?:toilet|bathroom|loo|doctor|therapy)"
+    r"|(?:to|into) (?:his|her|their) rooms?))*"
 )
 _NAMES_FIRST = re.compile(rf"(.+?),?{_SOON}(?:({_COMES})|{_GOES}){_WHERE}", re.I)
 _NAMES_LAST = re.compile(r"(?:(here)(?: comes?| is| are)?|left) (.+)", re.I)

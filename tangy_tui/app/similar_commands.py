@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Sequence
 from difflib import get_close_matches
 
@@ -12,6 +11,7 @@ from tangy_tui.app.command_grammar import FIXED, read_command
 from tangy_tui.app.inquiry_grammar import read_inquiry
 from tangy_tui.app.offered import EVERYTHING, Need, needs_of
 from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.word_frames import words_in
 
 NEAR = 0.75  # least similarity of a whole line: some commands move the robot
 NEAR_WORD = 0.8  # least similarity of a word
@@ -21,13 +21,14 @@ BEGUN = ("autonomy", "drive")
 """The beginnings of commands that have to go on."""
 
 COMMANDS: dict[str, tuple[str, ...]] = {
-    "slower": ("slow", "slower", "slowly"),
-    "faster": ("fast", "faster", "quick", "quicker", "quickly", "speed"),
-    "pause": ("pause", "break", "wait", "rest"),
+    "slower": ("slow", "slower", "slowly", "too fast", "too quick", "so fast", "so quickly"),
+    "faster": ("fast", "faster", "quick", "quicker", "quickly", "speed", "hurry", "too slow"),
+    "pause": ("pause", "break", "wait", "rest", "hold on", "coffee", "tea", "lunch"),
     "go on": ("continue", "resume", "proceed", "start"),
-    "call again": ("again", "repeat", "louder"),
+    "call again": ("again", "repeat", "louder", "hear", "heard", "catch", "missed"),
     "take back": ("undo", "wrong", "mistake", "back"),
     "take over": ("control", "myself"),
+    "stop": ("fell", "fallen", "fainted", "collapsed", "accident", "emergency", "ambulance"),
     "end": ("finish", "finished", "quit", "exit", "over", "end"),
     "why": ("why", "reason", "what", "doing", "happening", "happens", "next", "explain"),
     "several winners": ("winners",),
@@ -35,11 +36,17 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }
 """Words that hint at a command without a person."""
 
+OPPOSITE = {"slower": "faster", "faster": "slower"}
+"""Commands of which only one can be meant; two words in a row decide ("too fast" is slower)."""
+
 ABOUT_PERSON: dict[str, tuple[str, ...]] = {
     "ask for {name}": ("help", "helps", "needs", "need", "ask", "asks", "assist", "visit", "go"),
     "left {name}": (
         *("left", "gone", "leaves", "leave", "leaving", "went", "away", "out", "remove"),
-        *("goodbye", "bye", "bed", "home", "toilet"),
+        *("goodbye", "bye", "bed", "home", "toilet", "bathroom", "loo", "doctor", "visitors"),
+        *("tired", "sleepy", "sleeps", "asleep", "unwell", "ill", "sick", "finished", "enough"),
+        *("stop playing", "not play", "no longer", "any more", "anymore", "not well"),
+        *("not feel", "not feeling", "feels bad", "had enough", "wants to rest", "a rest"),
     ),
     "here {name}": (
         *("here", "back", "came", "come", "comes", "coming", "arrived", "arrives", "in"),
@@ -102,7 +109,7 @@ def _is_offered(near: str, rules: GameRules, offers: Collection[Need]) -> bool:
 
 def _hinted(text: str, names: Sequence[str], claim: str) -> Iterator[str]:
     """Yield the commands that single words hint at; those about a person first."""
-    words = re.findall(r"[^\W_]+", text.casefold())
+    words = [*words_in(text.replace("-", " "))]
     words = ["claim" if word == claim.casefold() else word for word in words]
     number = next((word for word in words if word.isascii() and word.isdecimal()), "")
     found = _named(words, names)
@@ -114,12 +121,21 @@ def _hinted(text: str, names: Sequence[str], claim: str) -> Iterator[str]:
         for command, hints in NUMBERED.items():
             if _hints(words, hints):
                 yield command.format(number=number or PLAIN_NUMBERS[command], claim=claim)
-    for command, hints in COMMANDS.items() if not found else ():
-        if _hints(words, hints):
-            yield command
+    hinted = [one for one, hints in COMMANDS.items() if not found and _hints(words, hints)]
+    yield from (one for one in hinted if OPPOSITE.get(one) not in hinted or _in_two(words, one))
+
+
+def _in_two(words: Sequence[str], command: str) -> bool:
+    """Return whether two words in a row hint at a command: "too fast"."""
+    spoken = f" {' '.join(words)} "
+    return any(f" {hint} " in spoken for hint in COMMANDS[command] if " " in hint)
 
 
 def _hints(words: Sequence[str], hints: Sequence[str]) -> bool:
+    spoken, hints = f" {' '.join(words)} ", [*hints]
+    if any(f" {hint} " in spoken for hint in hints if " " in hint):
+        return True
+    hints = [hint for hint in hints if " " not in hint]
     return any(
         word in hints
         or (len(word) > len("back") and get_close_matches(word, hints, 1, NEAR_WORD))

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from tangy_profiles.game_rules import NO_RULES, GameRules
 from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.app.game_questions import read_saying
 from tangy_tui.app.inquiry_grammar import Question, read_question
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.screen_grammar import Perform, read_screen
@@ -24,6 +26,9 @@ def commands_in(typed: GameCommand | Several) -> tuple[GameCommand, ...]:
     return typed.commands if isinstance(typed, Several) else (typed,)
 
 
+EXPLAINED = ("why", "help", "phrases")
+"""Actions that explain; a question about the game comes first."""
+
 Typed: TypeAlias = GameCommand | Several | Question | Perform
 
 
@@ -32,6 +37,9 @@ def read_typed(
     read: Callable[[str], GameCommand | None],
     find_person: Callable[[str], str],
     can: Callable[[str], bool],
+    rules: GameRules = NO_RULES,
+    *,
+    asks: bool = False,
 ) -> Typed | None:
     """Parse a line that staff typed; None if it is nothing of this.
 
@@ -40,6 +48,8 @@ def read_typed(
         read: parses a command.
         find_person: returns the id of a person by name or id.
         can: returns whether the screen has an action of the keymap.
+        rules: the choices that the activity gives staff.
+        asks: whether Tangy asks what to do; then thanks and the like may be the answer.
 
     Raises:
         TangyError: it resembles a command, but a part of it is wrong; one sentence.
@@ -50,5 +60,15 @@ def read_typed(
         return Several(commands)
     if commands:
         return commands[0]
-    word = read_question(typed, find_person) or read_screen(typed)
-    return None if isinstance(word, Perform) and not can(word.action) else word
+    word = read_screen(typed)
+    if isinstance(word, Perform) and word.action not in EXPLAINED:
+        return word if can(word.action) else None
+    question = read_question(typed, find_person)
+    if question is not None:
+        return question
+    if word is not None:
+        return word if can(word.action) else None
+    said = None if asks else read_saying(typed, find_person, rules)
+    if said is not None and said.topic == "new game" and can("next"):
+        return Perform("next")
+    return said

@@ -10,7 +10,7 @@ from tangy_profiles.planned_game import as_planned
 from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.app.game_moment import game_moment
+from tangy_tui.app.game_questions import read_saying
 from tangy_tui.app.inquiry_grammar import WHO_IS_HERE, WHOSE_CARDS, read_inquiry, read_question
 from tangy_tui.app.keymap import BY_ID
 from tangy_tui.app.offered import offered
@@ -21,7 +21,8 @@ from tangy_tui.text.calls import waits_line
 from tangy_tui.text.changes import cards_line, patterns_line
 from tangy_tui.text.control import going_words, person_wait_words, proposal_words
 from tangy_tui.text.earlier import earlier_fault_lines, earlier_lines
-from tangy_tui.text.faults import HALTED, advice_lines
+from tangy_tui.text.faults import HALTED
+from tangy_tui.text.game_answers import to_do_lines
 from tangy_tui.text.game_help import help_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.messages import NONE_YET
@@ -31,13 +32,12 @@ from tangy_tui.text.situations import Name, state_words
 from tangy_tui.text.staff_lines import (
     ACCEPTABLE,
     ANSWER_IN_WORDS,
-    NOTHING_WRONG,
     SAY_IN_WORDS,
     not_known,
     nothing_to,
 )
 from tangy_tui.text.staff_view import SEVERAL_WIN, person_words, played_words, won_words
-from tangy_tui.text.whose_turn import IN_DETAIL, held_words, why_now_lines
+from tangy_tui.text.whose_turn import IN_DETAIL, why_now_lines
 
 
 class Inquiries:
@@ -70,11 +70,11 @@ class Inquiries:
     def lines(self, text: str) -> list[str] | None:
         """Return the answer to a typed question; None if it is none."""
         try:
-            question = read_question(text, self._find_person)
+            asked = read_question(text, self._find_person)
         except TangyError as error:
             return [str(error)]
-        if question is not None:
-            return answer_to(question, self._controller, self._name).lines
+        if asked is not None:
+            return answer_to(asked, self._controller, self._name).lines
         word = text.casefold()
         match read_inquiry(word):
             case "help" | "phrases":
@@ -84,7 +84,7 @@ class Inquiries:
             case "why":
                 return self._why()
             case "what to do":
-                return advice_lines(self._game) or self._nothing_wrong()
+                return to_do_lines(self._controller, self._name)
             case "faults":
                 return earlier_fault_lines(self._before, self._game.faults)
             case "patterns":
@@ -103,7 +103,10 @@ class Inquiries:
             return [NO_QUESTION]
         if word in ("undo", "redo"):
             return [nothing_to(word)]
-        return None
+        if self._controller.asks_next:
+            return None  # it may be the answer
+        said = read_saying(text, self._find_person, self._game.world.activity.rules)
+        return None if said is None else answer_to(said, self._controller, self._name).lines
 
     def unknown(self, text: str) -> str:
         """Tell that a line is nothing that can be typed here, and suggest similar commands."""
@@ -111,11 +114,6 @@ class Inquiries:
         names, rules = [*map(self._name, world.people)], world.activity.rules
         near = nearest_commands(text, names, rules, offered(self._controller))
         return plain(not_known(text[:60], ", or ".join(near)))
-
-    def _nothing_wrong(self) -> list[str]:
-        """Tell that nothing is wrong, and what holds the game if something does."""
-        held = "" if self._game.over else held_words(game_moment(self._controller))
-        return [NOTHING_WRONG, held] if held else [NOTHING_WRONG]
 
     @property
     def _before(self) -> EarlierPart | None:

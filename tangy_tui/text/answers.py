@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple, assert_never
 
 from tangy_tui.app.game_moment import game_moment
+from tangy_tui.app.game_questions import AsksGame
 from tangy_tui.app.inquiry_grammar import (
     AsksAbout,
     AsksHowLong,
@@ -12,6 +13,7 @@ from tangy_tui.app.inquiry_grammar import (
     AsksWhoWon,
     Question,
 )
+from tangy_tui.text.game_answers import WHAT_YOU_ASKED, game_answer_lines
 from tangy_tui.text.planned_time import HOW_LONG, time_lines
 from tangy_tui.text.whose_turn import WHO_WAITS, WHOSE_TURN, about_lines, waiting_lines
 from tangy_tui.text.winners import WHO_WON, won_lines
@@ -37,6 +39,8 @@ def answer_to(question: Question, control: GameController, name: Name) -> GameAn
             return GameAnswer(WHO_WAITS, waiting_lines(game_moment(control), name))
         case AsksWhoWon():
             return GameAnswer(WHO_WON, won_lines(control, name))
+        case AsksGame():
+            return GameAnswer(WHAT_YOU_ASKED, game_answer_lines(question, control, name))
         case AsksAbout():
             return GameAnswer(WHOSE_TURN, about_lines(control, question, name))
         case forgotten:

@@ -48,7 +48,7 @@ class PlayAnswers(PlayPanels):
             self._tell_now(NOTHING_DECIDED, "dim")
 
     def answer_about(self, about: Question) -> None:
-        """Answer a typed question: about turns, who waits, who has won, or how long you play."""
+        """Answer a typed question about the game or its people."""
         answer = answer_to(about, self.control, staff_names(self._workspace.name))
         self.app.push_screen(MessageDialog("\n".join(answer.lines), answer.title))
 

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from functools import partial
 
 from textual.timer import Timer
 
@@ -245,11 +246,11 @@ class PlayStaff(PlayAnswers):
 
     def _ask_command(self, begun: str, asked: tuple[str, str] | None = None) -> None:
         """Ask staff for a command; `asked` is the question, and its explanation."""
-        activity = self._workspace.activity
+        activity, can = self._workspace.activity, partial(can_perform, self)
         names, offers = [*self._workspace.names.values()], offered(self.control)
         read = command_reader(activity, self.id_of)
         dialog = CommandDialog(
-            lambda typed: read_typed(typed, read, self.id_of, lambda id: can_perform(self, id)),
+            lambda typed: read_typed(typed, read, self.id_of, can, activity.rules),
             begun,
             *(asked or (TITLE, self._told(example_words(activity.rules, offers)))),
             lambda typed: nearest_commands(typed, names, activity.rules, offers),

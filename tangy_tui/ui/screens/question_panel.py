@@ -269,9 +269,9 @@ class AskingPanel(Vertical):
         """Handle an answer or a command that was typed here, or before the question was visible."""
         self._by_voice = False
         try:
-            find = self._find_person
+            find, screen = self._find_person, self.screen
             read = command_reader(self._workspace.activity, find, asks=lambda: True)
-            command = read_typed(typed, read, find, lambda id: can_perform(self.screen, id))
+            command = read_typed(typed, read, find, lambda id: can_perform(screen, id), asks=True)
         except TangyError as error:
             self._return(typed, str(error))
             return
