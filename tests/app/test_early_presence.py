@@ -10,7 +10,10 @@ from threading import Thread
 
 import pytest
 
+from tangy_hw.robot_client.help_requests import HelpRequestTracker
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_records import GameChange
+from tangy_profiles.game_world import BENCH, LIVE
 from tangy_profiles.past_game import interrupted_game
 from tangy_profiles.staff_records import StaffAction
 from tangy_profiles.store import Store
@@ -23,6 +26,7 @@ from tangy_tui.app.game_commands import (
     GoesAway,
 )
 from tangy_tui.app.staff_notes import StaffNote
+from tangy_tui.app.waiting_on import wait_on
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.in_progress import ProgressLines
 from tangy_tui.console.telling import GameTelling
@@ -274,3 +278,66 @@ def test_for_whom_staff_asked_in_vain_still_waits_in_a_game_that_is_set_up_anew(
     later = datetime.now(UTC) + timedelta(hours=1)
     monkeypatch.setattr(Store, "now", lambda store: later)
     assert Robot(robot.workspace).world.queue == ()
+
+
+def test_a_wait_goes_on_between_two_games(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user3"))
+    robot.control.apply(AskFor("user4"))
+    robot.control.view()
+    robot.link.time += 300.0
+    robot.next(1)  # to user3
+    robot.control.apply(EndGame())
+    later = datetime.now(UTC) + timedelta(minutes=20)
+    monkeypatch.setattr(Store, "now", lambda store: later)
+    waits = wait_on(robot.workspace.store, Robot(robot.workspace, begins=False).world)
+    assert set(waits) == {"user4"} and waits["user4"] >= 300.0 + 20 * 60
+
+
+@pytest.mark.parametrize(
+    ("world", "sign", "waits"), [(LIVE, "", False), (LIVE, "no sensor", True), (BENCH, "", True)]
+)
+def test_a_request_by_a_sign_goes_over_only_if_the_new_game_cannot_see_the_sign(
+    taught: Path, monkeypatch: pytest.MonkeyPatch, world: str, sign: str, waits: bool
+) -> None:
+    monkeypatch.setattr(LiveWorld, "played_in", world)
+    monkeypatch.setattr(HelpRequestTracker, "sign_of", lambda tracker, person: sign)
+    robot = Robot(Workspace(taught))
+    robot.next(2)
+    robot.link.sign(3, 4)
+    robot.next(1)  # to user3
+    robot.control.apply(EndGame())
+    anew = Robot(robot.workspace, begins=False)
+    told = wait_on(robot.workspace.store, anew.world)
+    assert set(told) == ({"user4"} if waits else set())
+    robot.workspace.close()
+
+
+@pytest.mark.parametrize("away", [True, False])
+def test_nobody_waits_on_who_does_not_play_or_for_a_robot_elsewhere(
+    robot: Robot, monkeypatch: pytest.MonkeyPatch, away: bool
+) -> None:
+    robot.next(2)
+    robot.control.apply(AskFor("user3"))
+    robot.control.apply(AskFor("user4"))
+    robot.control.view()
+    robot.next(1)  # to user3
+    robot.control.apply(EndGame())
+    anew = Robot(robot.workspace, begins=False)
+    assert set(wait_on(robot.workspace.store, anew.world)) == {"user4"}
+    if away:
+        people = [person for person in anew.world.people if person != "user4"]
+        monkeypatch.setattr(anew.world, "people", tuple(people))
+    else:
+        monkeypatch.setattr(anew.world, "played_in", BENCH)
+    assert wait_on(robot.workspace.store, anew.world) == {}
+
+
+def test_signs_that_were_set_aside_count_again_in_the_next_game(robot: Robot) -> None:
+    robot.next(2)
+    robot.link.sign(3)
+    robot.world.requests.set_aside("user3")
+    assert "user3" not in robot.world.requests.all
+    robot.control.apply(EndGame())
+    robot.control.begin()
+    assert "user3" in robot.world.requests.all
