@@ -6,6 +6,7 @@ import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager, suppress
+from time import monotonic
 from types import FrameType
 from typing import Any, Generic, NoReturn
 
@@ -38,6 +39,8 @@ class SwitchingOn(Generic[Opened]):
         self._stepped = stepped
         self._cancellation = Cancellation()
         self._opened = ExitStack()
+        self.took = 0.0
+        """How long the robot took to come on, in s; 0: it has not come on yet."""
         self.failure = ""
         """Why it did not come on, for people to read; empty: it is on, or was cancelled."""
 
@@ -51,7 +54,9 @@ class SwitchingOn(Generic[Opened]):
         try:
             self._cancellation.check()
             with ExitStack() as opened:
+                began = monotonic()
                 world = opened.enter_context(self._opening(self._stepped, self._cancellation))
+                self.took = monotonic() - began
                 self._cancellation.complete()
                 self._opened = opened.pop_all()
         except BaseException:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil
 from typing import TYPE_CHECKING
 
 from tangy_profiles.robot import Robot
@@ -38,11 +39,21 @@ LOOKS_ROUND = "Tangy does not know where it is: it turns on the spot, then drive
 MAY_MOVE = "Tangy may move again."
 
 
-def starting_again_words(names: Sequence[str]) -> str:
-    """Tell that the robot is switched on again for new people."""
+SECONDS_TOLD = 5
+"""The time until a game goes on is told in steps of so many s."""
+
+
+def starting_again_words(names: Sequence[str], seconds: float = 0.0) -> str:
+    """Tell that the robot is switched on again for new people.
+
+    `seconds` is about how long that takes; 0: unknown.
+    """
+    joins = f"{listed(names)} {'joins' if len(names) == 1 else 'join'}."
+    about = ceil(seconds / SECONDS_TOLD) * SECONDS_TOLD
+    soon = f"in about {about} s" if about else "soon"
     return (
-        f"Tangy sets itself up for {listed(names)}: its devices are being started again. It stands "
-        "still until the game goes on."
+        f"{joins} The game goes on {soon}: Tangy's devices are being started again. It stands "
+        "still until then."
     )
 
 

@@ -151,7 +151,7 @@ async def _play(
             workspace, supervision, world, games=games, teacher=teacher or setup.on_duty, past=past
         )
         screen.control.admission = Admission(workspace, world)
-        screen.closes = robot.close
+        screen.closes, screen.took = robot.close, robot.took
         screen.takes = as_before_words(setup) if as_before else ""
         if before is not None:
             workspace.door.attach(screen.control)
@@ -227,6 +227,7 @@ async def _switch_on(
         robot.cancel,
         lambda: parts_lines(robot.parts, robot.done, profile),
         joins=() if before is None else before.control.welcomes,
+        seconds=0.0 if before is None else before.took,
     )
     robot.failure, failed = "", ""
     program.push_screen(dialog)

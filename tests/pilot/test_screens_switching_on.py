@@ -85,16 +85,20 @@ async def test_the_dialog_shows_the_progress_and_how_to_cancel(
 
 
 @pytest.mark.parametrize(
-    ("joins", "until_when"), [((), STARTING), (("Berta",), starting_again_words(("Berta",)))]
+    ("joins", "until_when"), [((), STARTING), (("Berta",), starting_again_words(("Berta",), 18.0))]
 )
 async def test_the_dialog_tells_until_when_the_robot_stands_still(
     run: Run, joins: tuple[str, ...], until_when: str
 ) -> None:
-    dialog = SwitchingOnDialog("Tangy", lambda: None, joins=joins)
+    dialog = SwitchingOnDialog("Tangy", lambda: None, joins=joins, seconds=18.0)
     async with run() as pilot:
         pilot.app.push_screen(dialog)
         await dialog.shown()
-        assert until_when.split(". ")[1] in " ".join(pilot.text().replace("│", " ").split())
+        shown = " ".join(pilot.text().replace("│", " ").split())
+        assert until_when.split(". ")[1] in shown
+        assert ("Berta joins. The game goes on in about 20 s:" in shown) is bool(joins)
+        hides = dialog.styles.background.a == 1.0  # the home screen lies below
+        assert hides is bool(joins)
 
 
 @pytest.mark.slow

@@ -30,6 +30,9 @@ class SwitchingOnDialog(Dialog[None]):
     """Stays until the robot is on, or off again. Esc, STOP and the end of the program cancel it."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "call_off", "Leave it off")]
+    DEFAULT_CSS = """
+    SwitchingOnDialog.-joins { background: $background; }
+    """  # the home screen below it is not where the game is
     HELP = "Wait until the robot is switched on, or press esc to leave it off."
 
     def __init__(
@@ -39,6 +42,7 @@ class SwitchingOnDialog(Dialog[None]):
         parts: Callable[[], Sequence[str]] = tuple,
         *,
         joins: Sequence[str] = (),
+        seconds: float = 0.0,
     ) -> None:
         """Create the dialog.
 
@@ -47,12 +51,14 @@ class SwitchingOnDialog(Dialog[None]):
             call_off: cancels the start; may be called more than once.
             parts: returns lines with the parts that are started, and the one in progress.
             joins: the names of new people, with whom a game goes on then; none for a new game.
+            seconds: about how long that takes; 0: unknown.
         """
         super().__init__(None)
+        self.set_class(bool(joins), "-joins")
         self._title = clean(title)
         self._call_off = call_off
         self._parts = parts
-        self._then = starting_again_words([*map(clean, joins)]) if joins else STARTING
+        self._then = starting_again_words([*map(clean, joins)], seconds) if joins else STARTING
         self._leaves = KEEPS_GAME if joins else LEAVES_OFF
         self._told: Sequence[str] = ()
         self.called_off = False

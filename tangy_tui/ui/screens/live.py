@@ -98,6 +98,8 @@ class LiveScreen(LiveStaff):
         self.picture.over = self._over_words
         self.closes: Callable[[], object] = lambda: None
         """Switches the robot off; it may be called again."""
+        self.took = 0.0
+        """How long the robot took to come on, in s; 0: unknown."""
         self.takes = ""
         """What the game takes from the last one, if nobody set it up."""
         self._seen_doing = ""
