@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -20,6 +21,9 @@ from tangy_tui.app.rooms import check_places, source_in
 if TYPE_CHECKING:
     from tangy_profiles.voice import VoicePreference
     from tangy_tui.interaction.forgetting import Forgotten
+
+_TITLED = re.compile(r"(?:mrs|mr|ms|miss|dr)\.? +(.+)", re.I)
+"""A title before a name."""
 
 
 class Participants:
@@ -89,6 +93,8 @@ class Participants:
     def find_person(self, wanted: str) -> Person:
         """Return the person with an id, a name, or a first name that one person has.
 
+        After a title, a last name that one person has counts, too: "Mrs Berg".
+
         Raises:
             TangyError: nobody, or more than one, is called that.
         """
@@ -98,6 +104,10 @@ class Participants:
         found = found or [
             p for p in self.people if unaccented(p.name).split()[:1] == [unaccented(wanted)]
         ]
+        if not found and (titled := _TITLED.fullmatch(wanted)):
+            last = unaccented(titled[1])
+            found = [p for p in self.people if unaccented(p.name) == last]
+            found = found or [p for p in self.people if unaccented(p.name).split()[-1:] == [last]]
         if len(found) == 1:
             return found[0]
         if found:

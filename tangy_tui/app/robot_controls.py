@@ -173,10 +173,7 @@ class RobotControls:
             return StaffNote("no robot")
         match command:
             case AskFor(person):
-                robot.requests.ask_for(person)
-                self._note("asked for", person=person)
-                goes = goes_to_people(robot.activity)
-                return StaffNote("asked for" if goes else "asked to help", person)
+                return self._ask_for(robot, person)
             case Tell():
                 return self._tell(robot, command)
             case HasCard(person, card):
@@ -191,6 +188,20 @@ class RobotControls:
         self._note("called again", detail=label)
         robot.call_again()
         return StaffNote("call again", label)
+
+    def _ask_for(self, robot: LiveWorld, person: str) -> StaffNote:
+        """Ask for help for a person; if they wait already, tell after whom."""
+        by_word, scene = robot.requests.by_word, robot.scene()
+        waiting = [*scene.requests, *(one for one in by_word if one not in scene.requests)]
+        robot.requests.ask_for(person)
+        if person not in by_word:
+            self._note("asked for", person=person)
+        if person in waiting:
+            before = tuple(waiting[: waiting.index(person)])
+            there = "there" if scene.place == person else ""
+            return StaffNote("asked already", person, there, before)
+        goes = goes_to_people(robot.activity)
+        return StaffNote("asked for" if goes else "asked to help", person)
 
     def keep_claimed(self, claim: ClaimCard) -> None:
         """Note the card that staff say a person claims with, if nobody knew either's before.

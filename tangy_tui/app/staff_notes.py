@@ -34,6 +34,7 @@ DoneKind = Literal[
     "goes",
     "asked for",
     "asked to help",
+    "asked already",
     "told",
     "told right",
     "told wrong",

@@ -27,6 +27,7 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.inquiry_grammar import read_inquiry
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.planned_time import planned_end
+from tangy_tui.app.request_grammar import without_courtesy
 from tangy_tui.app.robot_controls import STOPPED
 from tangy_tui.app.set_up import MINUTES, SetUp
 from tangy_tui.app.staff_notes import StaffNote
@@ -72,7 +73,7 @@ class SetUpLines:
         self._tell_all()
         self._write(lines.help_words(self.setup))
         while (line := self._read()) is not None:
-            words = " ".join(line.split()).strip(" .")
+            words = without_courtesy(line).strip(" .!")
             if words.casefold() in ("begin", *_TRY):
                 self._tries = words.casefold() in _TRY
                 return True
@@ -148,9 +149,12 @@ class SetUpLines:
         if not (not_ready or stopped or self._tries):
             return True
         trying = TryingDevices(self.setup, self._write)
-        while (line := self._read()) is not None and line.strip().casefold() not in _NO:
+        while (line := self._read()) is not None:
+            words = without_courtesy(line).strip(" .!").casefold()
+            if words in _NO:
+                return False
             command = self._command_in(line)
-            if line.strip().casefold() == "begin" or isinstance(command, GoOn):
+            if words == "begin" or isinstance(command, GoOn):
                 return True
             if isinstance(command, StopRobot):
                 stopped = True

@@ -9,6 +9,7 @@ from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import CallAgain, ClaimCard, ComesIn, GoesAway, TakeBackCall
 from tangy_tui.text import joining
 from tangy_tui.text.decisions import shown_here
+from tangy_tui.text.numbers import listed
 from tangy_tui.text.planned_time import SIMULATED_TIME, planned_words
 from tangy_tui.text.player_reports import player_report_words
 
@@ -239,6 +240,12 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
             return f"You asked for {name(about)}. Tangy goes there in turn."
         case "asked to help":
             return f"You asked for {name(about)}. Tangy helps in turn."
+        case "asked already" if noted.words:
+            return f"Tangy is with {name(about)} already, or on its way."
+        case "asked already":
+            before = listed([name(one) for one in noted.people])
+            where = f"after {before}" if before else "and is the first of those who wait"
+            return f"{name(about)} waits for Tangy already, {where}."
         case (
             "told"
             | "told right"

@@ -81,7 +81,7 @@ def not_known_words(typed: str, near: str, known: Mapping[str, str] = COMMANDS) 
     """
     first, example = typed.partition(" ")[0].casefold(), known.get(near, "")
     if near == first:
-        return plain(f"Tangy cannot do '{typed[:60]}'. Type it as in: {example}.")
+        return plain(f"Tangy does not understand '{typed[:60]}'. Type it like this: {example}.")
     meant = f"Did you mean: {example}?" if example else "help lists all commands."
     return plain(f"Tangy does not know '{typed[:60]}'. {meant} All that you chose is kept.")
 

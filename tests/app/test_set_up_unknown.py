@@ -44,6 +44,17 @@ def test_the_nearest_command_is_told(workspace: Workspace, typed: str, near: str
     assert setup.minutes == 40 and setup.away == {"user3"}
 
 
+def test_please_and_people_who_come_later_are_understood(workspace: Workspace) -> None:
+    setup, said = answers(workspace, "time 40 please", "please, left User 1", "banana please")
+    assert setup.minutes == 40 and setup.away == {"user1"}
+    assert said[-1] == told.not_known_words("banana", "")
+    setup, _ = answers(workspace, "User 2 and User 3 come later")
+    assert setup.away == {"user2", "user3"}
+    reached = iter(["begin please"])
+    assert SetUpLines(setup, lambda: next(reached, None), said.append).run()
+    assert "cannot" not in told.not_known_words("begin the fun", "begin")
+
+
 def test_a_command_of_games_is_known_but_works_later(workspace: Workspace) -> None:
     for typed in ("pause", "call again", "stop", "bingo 17"):
         assert answers(workspace, typed)[1] == [told.in_a_game_words(typed)]

@@ -107,8 +107,8 @@ class HelpRequestTracker:
         return tuple(self._by_word)
 
     def ask_for(self, person: str) -> None:
-        """Record a request for a person without a sign."""
-        self._by_word[person] = self._link.time
+        """Record a request for a person by word; who asks already keeps their place."""
+        self._by_word.setdefault(person, self.all.get(person, self._link.time))
         self._met.discard(person)
 
     def wait_on(self, waits: Mapping[str, float]) -> None:
