@@ -294,6 +294,16 @@ class PastGame:
                 called.remove(number)
         return called
 
+    def called_by(self, activity: Activity, steps: int) -> list[int]:
+        """Return the numbers that counted as called after so many steps, in order."""
+        draws = calling(activity.behaviours)
+        called = [n for s in self.steps[:steps] if s.behaviour in draws for n in s.numbers]
+        for one in self.changes:
+            mine = one.game == self.beginning.game and one.steps <= steps
+            if mine and one.what == "taken back" and one.number in called:
+                called.remove(one.number)
+        return called
+
     def order(self, shuffled: Sequence[int], called: Sequence[int]) -> list[int]:
         """Return the calling order of all numbers, given the shuffled order.
 

@@ -253,6 +253,22 @@ def test_a_resumed_live_game_keeps_the_order_of_its_numbers(taught: Path) -> Non
     workspace.close()
 
 
+def test_a_resumed_live_game_knows_at_which_call_somebody_has_won(taught: Path) -> None:
+    workspace = Workspace(taught)
+    before = Robot(workspace)
+    while len(before.world.called) < 3:
+        before.next(1)
+    before.control.supervision.game.change("others first", person="user2", by="")
+    before.next(1)
+    (won,) = before.world.all_wins
+    past = interrupted_game(workspace.store, workspace.activity.name)
+    assert past is not None
+    after = Robot(workspace, past)
+    assert after.world.all_wins == (won,) and won.calls == 3
+    assert tuple(after.world.called) == tuple(before.world.called)
+    workspace.close()
+
+
 def test_a_resumed_live_game_knows_whose_card_it_is(taught: Path) -> None:
     workspace = Workspace(taught)
     before = Robot(workspace)

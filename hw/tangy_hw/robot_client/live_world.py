@@ -29,6 +29,7 @@ from tangy_hw.robot_process.stop_latch import ALONE, Preempted
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_records import GameChange
 from tangy_profiles.game_world import LIVE, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.known_cards import KnownCards
@@ -124,7 +125,12 @@ class LiveWorld(LivePlan):
         """Resume an interrupted game, or raise NotResumable."""
         for _ in range(past.beginning.number):
             self._begin()  # each game of the run has its own order
-        past.follow(self.tracker, self.change)
+
+        def change(one: GameChange) -> None:
+            self.calls.called = past.called_by(self.activity, one.steps)  # for wins of that time
+            self.change(one)
+
+        past.follow(self.tracker, change)
         asked = (*self.tracker.queue, *past.asked_for)  # these after the last step
         waits = past.waits(self.activity)
         self.requests.wait_on({p: waits.get(p, 0.0) for p in asked if p not in self.away})
