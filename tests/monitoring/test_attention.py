@@ -479,3 +479,35 @@ def test_the_staff_table_has_all_columns_for_every_action(played: Workspace) -> 
         ("move", None),
     ]
     assert all(set(row) == set(table.columns) for row in rows)
+
+
+@pytest.mark.parametrize("away", [True, False])
+def test_a_request_goes_over_into_a_game_without_steps_only_for_who_is_there(away: bool) -> None:
+    first, empty = live(replay_of(REST, ASKS, ASKS), 0.0), live(replay_of(REST), 60.0)
+    if away:
+        empty = replace(empty, game=replace(empty.game, away=frozenset({"ann"})))
+    before, then = (
+        found.get("ann", Attention("ann")) for found in attention_by_game([first, empty])
+    )
+    assert (before.requests, then.requests) == ((1, 0) if away else (0, 1))
+
+
+def test_a_request_that_ends_in_the_first_step_of_the_next_game_goes_over() -> None:
+    first, then = live(replay_of(REST, ASKS, ASKS), 0.0), live(replay_of(ASKS, REST, REST), 60.0)
+    assert [wait.over for wait in attention([first, then])["ann"].asked] == [True]
+
+
+def test_a_request_goes_over_to_nobody_who_does_not_play_any_more() -> None:
+    first, then = live(replay_of(REST, ASKS, ASKS), 0.0), live(replay_of(ASKS, ASKS), 60.0)
+    then = replace(then, game=replace(then.game, people=("bob",)))
+    before, after = attention_by_game([first, then])
+    assert before["ann"].asked == [Wait(10.0, over=False)] and "ann" not in after
+
+
+@pytest.mark.parametrize("states", [(REST, ASKS, ASKS), (REST, state("ann"), REST)])
+def test_who_was_away_is_listed_if_they_asked_or_were_visited(
+    states: tuple[ActivityState, ...],
+) -> None:
+    replay = replay_of(*states)
+    replay.game = game(away=frozenset(("ann", "bob")))
+    assert list(attention_in(replay)) == ["ann"]
