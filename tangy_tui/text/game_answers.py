@@ -62,7 +62,7 @@ def to_do_lines(control: GameController, name: Name) -> list[str]:
     now = now_lines(control.supervision.world.activity, moment, name)
     if moment.holder in ("", "joining"):
         return [f"{NOTHING_WRONG} {NOTHING_TO_DO}", *now]
-    return [NOTHING_WRONG, *now]
+    return now if moment.holder == "stopped" else [NOTHING_WRONG, *now]
 
 
 def game_answer_lines(asked: AsksGame, control: GameController, name: Name) -> list[str]:

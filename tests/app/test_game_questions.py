@@ -186,6 +186,9 @@ def test_with_nothing_to_do_staff_hear_so_and_what_tangy_does(planned: Planned) 
     planned.control.apply(Pause())
     told = asked(planned, "what do I do")
     assert text.NOTHING_TO_DO not in told[0] and "paused" in told[1]
+    planned.control.apply(StopRobot())  # somebody may have fallen
+    told = asked(planned, "what do I do")
+    assert NOTHING_WRONG not in told and "stopped" in told[0]
 
 
 def test_where_tangy_is_the_time_the_battery_and_sayings_get_an_answer(planned: Planned) -> None:
