@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from tangy_profiles.game_rules import NO_RULES, GameRules
 from tangy_tui.app.game_commands import GameCommand
-from tangy_tui.app.game_questions import read_saying
+from tangy_tui.app.game_questions import AsksGame, read_saying
 from tangy_tui.app.inquiry_grammar import Question, read_question
 from tangy_tui.app.plan_grammar import lines_of
 from tangy_tui.app.screen_grammar import Perform, read_screen
@@ -62,7 +62,9 @@ def read_typed(
         return commands[0]
     word = read_screen(typed)
     if isinstance(word, Perform) and word.action not in EXPLAINED:
-        return word if can(word.action) else None
+        if can(word.action):
+            return word
+        return AsksGame("new game") if word.action == "next" else None
     question = read_question(typed, find_person)
     if question is not None:
         return question

@@ -230,7 +230,7 @@ class Dialog(ModalScreen[ResultT]):
 ACTIONS = {"palette": "command_palette", "draw": "draw_again", "begin": "play"}
 """Textual's names of keymap actions, if they differ."""
 
-OF_SCREENS = ("why", "whose_card", "presence")
+OF_SCREENS = ("why", "whose_card", "presence", "next")
 """Actions that each screen carries out in its own way."""
 
 
