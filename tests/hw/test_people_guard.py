@@ -11,7 +11,7 @@ import pytest
 
 from tangy_hw.device_protocols import STILL, Twist
 from tangy_hw.navigation.limits import MotionLimits
-from tangy_hw.navigation.people_guard import FRESH, NearbyPeople, limit_near_people
+from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import Track
 from tests.bench.people_arriving import LIMITS, meeting
 from tests.bench.people_drives import drives
@@ -104,8 +104,9 @@ def test_the_robot_drives_away_from_a_walker_behind_it_but_not_from_one_who_has_
     away = Twist(0.2, 0.0)
     known = body(0.35, radians(150), pace=1.2)
     assert limit_near_people(away, NearbyPeople([known], NO_ENDS), limits) == away
-    new = body(0.35, radians(150), age=FRESH / 2, pace=1.2)
-    assert limit_near_people(away, NearbyPeople([new], NO_ENDS), limits) == STILL
+    for age, told in ((0.05, STILL), (0.45, STILL), (0.55, away)):  # s
+        new = body(0.35, radians(150), age=age, pace=1.2)
+        assert limit_near_people(away, NearbyPeople([new], NO_ENDS), limits) == told
 
 
 def test_the_robot_stands_before_a_walker_who_comes_out_of_the_blind_sector() -> None:
