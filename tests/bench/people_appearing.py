@@ -47,9 +47,13 @@ class Meeting:
 
     @property
     def in_time(self) -> bool:
-        """Whether a robot that brakes from the first scan on stands before they meet."""
-        stands = LATE * TICK + self.speed / BRAKE
-        way = LATE * TICK * self.speed + self.speed**2 / (2 * BRAKE)
+        """Whether a robot that brakes from the first scan on stands before they meet.
+
+        Both move for a tick before the first scan, and for `LATE` more until it brakes.
+        """
+        late = (1 + LATE) * TICK
+        stands = late + self.speed / BRAKE
+        way = late * self.speed + self.speed**2 / (2 * BRAKE)
         return self.gap > way + self.pace * stands
 
 

@@ -174,12 +174,14 @@ def row(room: str, drives: int, seed: int, first: int = 0) -> str:
     false = sum(one.false for one in found)
     times = 1000 * np.concatenate([one.seconds for one in found])
     arrived = sum(one.drive.arrived for one in found)
+    blocked = sum(one.drive.told == "blocked" and not one.drive.arrived for one in found)
     told, looked = sum(one.told for one in found), sum(one.looked for one in found)
     people = f"{told} of {looked} sightings of people told; " if looked else ""
     return (
         f"{room:<20} {false} false persons in {minutes:.1f} minutes "
         f"({false / minutes:.2f} a minute); "
-        f"{people}arrived {arrived} of {drives}; tracker {np.median(times):.2f} ms a scan, "
+        f"{people}arrived {arrived} of {drives} ({blocked} told as blocked); "
+        f"tracker {np.median(times):.2f} ms a scan, "
         f"p95 {np.percentile(times, 95):.2f} ms"
     )
 

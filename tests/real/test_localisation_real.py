@@ -81,9 +81,9 @@ def test_odometry_with_the_wrong_sign_is_noticed(folder: str) -> None:
     any(shutil.which(program) is None for program in PROGRAMS),
     reason="MRPT is not installed (Debian's mrpt-apps)",
 )
-def test_the_error_is_at_most_a_quarter_above_that_of_mrpt(
+def test_the_error_is_close_to_that_of_mrpt_or_below(
     folder: str, way: Sequence[Moment], tmp_path: Path
 ) -> None:
     theirs = np.percentile(mrpt_errors(building(folder), way, tmp_path), [50, 95])
     ours = np.percentile(followed(folder, way, SEEDS[0]), [50, 95])
-    assert (ours <= 1.25 * theirs).all()
+    assert ours[0] <= 1.1 * theirs[0] and ours[1] <= 1.25 * theirs[1]
