@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import LONGEST_PACE, SHORTEST_PACE, GameRules
-from tangy_profiles.reading import plain
+from tangy_tui.app.claim_grammar import one_claim_each, read_claim
 from tangy_tui.app.game_commands import (
     ChoosePatterns,
     ClaimCard,
@@ -24,8 +23,6 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.presence_grammar import one_person_each, read_moved
 from tangy_tui.app.time_grammar import read_time
 
-CHECK = "check"
-"""The word before a card's number in every activity; an activity may define another."""
 _PACE = re.compile(r"pace (\d{1,4}(?:\.\d)?)(?: ?s| seconds?)?", re.I)
 _PATTERNS = re.compile(r"(?:play for|play on for|patterns?) (.+)", re.I)
 _JOINS = re.compile(
@@ -38,12 +35,11 @@ _CARD = re.compile(
     r"|card (?:number )?#?(\d{1,6}) (?:is|belongs to) (.+?)(?:['\u2019]s)?",
     re.I,
 )
-_CLAIMS = re.compile(r"(.+?) (?:has|calls|says|shouts|claims|got)(?: a| an)? (.+)", re.I)
 _TAKE_BACK = re.compile(r"take back (\S{1,8})", re.I)
 
 
 def lines_of(said: str, read: Callable[[str], object]) -> list[str]:
-    """Return the lines to carry out: one for each person if a line names several.
+    """Return the lines to carry out: one for each person or claim if a line names several.
 
     Args:
         said: the line.
@@ -52,6 +48,9 @@ def lines_of(said: str, read: Callable[[str], object]) -> list[str]:
     Raises:
         TangyError: the line cannot be read, or it names a person who is not known.
     """
+    claims = one_claim_each(said)
+    if len(claims) > 1 and all(isinstance(_read(read, line), ClaimCard) for line in claims):
+        return claims
     try:
         if read(said) is not None:
             return [said]
@@ -61,18 +60,18 @@ def lines_of(said: str, read: Callable[[str], object]) -> list[str]:
             raise
     else:
         each = one_person_each(said)
-        if len(each) == 1 or not any(map(partial(_reads, read), each)):
+        if len(each) == 1 or all(_read(read, line) is None for line in each):
             return [said]
     for line in each:
         read(line)
     return each
 
 
-def _reads(read: Callable[[str], object], line: str) -> bool:
-    """Return whether a line can be read as a command."""
+def _read(read: Callable[[str], object], line: str) -> object:
+    """Return a line as a command; None if it cannot be read as one."""
     with suppress(TangyError):
-        return read(line) is not None
-    return False
+        return read(line)
+    return None
 
 
 def read_planned(
@@ -83,7 +82,7 @@ def read_planned(
     Raises:
         TangyError: they resemble a command, but a part of it is wrong; one sentence.
     """
-    if claim := _claim(said, find_person, rules):
+    if claim := read_claim(said, find_person, rules):
         return claim
     if (time := read_time(said)) is not None:
         return time
@@ -112,32 +111,4 @@ def read_planned(
                 return None
             raise
         return ComesIn(person) if moved.comes else GoesAway(person)
-    return None
-
-
-def _claim(said: str, find_person: Callable[[str], str], rules: GameRules) -> GameCommand | None:
-    """Parse a claim: the activity's word for it, with a card's number, a name, or both."""
-    word, _, rest = said.partition(" ")
-    if not rules.claim:
-        return None
-    if word.casefold() not in (CHECK, rules.claim.casefold()):
-        return _claim_of(said, find_person, rules.claim)
-    number, _, person = rest.partition(" ")
-    digits = number.strip("#,:")
-    if rest and not digits.isdecimal():
-        with suppress(TangyError):
-            return ClaimCard(0, find_person(re.sub(r"^(?:for|by|of|from) ", "", rest)))
-    if not (digits.isascii() and digits.isdecimal() and len(digits) <= 6):
-        wrong = f"'{rest[:60]}'" if rest else f"'{word}' alone"
-        raise TangyError(plain(f"{wrong} is no number of a card. Say it as in: {word} 17."))
-    return ClaimCard(int(digits), find_person(person) if person.strip() else "")
-
-
-def _claim_of(said: str, find_person: Callable[[str], str], word: str) -> ClaimCard | None:
-    """Parse a sentence such as "Rosa has bingo"; None if nobody has the name."""
-    found = _CLAIMS.fullmatch(said)
-    if found is None or found[2].casefold() != word.casefold():
-        return None
-    with suppress(TangyError):
-        return ClaimCard(0, find_person(found[1]))
     return None

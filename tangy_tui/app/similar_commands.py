@@ -7,10 +7,10 @@ from difflib import get_close_matches
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import NO_RULES, GameRules
+from tangy_tui.app.claim_grammar import CHECK
 from tangy_tui.app.command_grammar import FIXED, read_command
 from tangy_tui.app.inquiry_grammar import read_inquiry
 from tangy_tui.app.offered import EVERYTHING, Need, needs_of
-from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.word_frames import words_in
 
 NEAR = 0.75  # least similarity of a whole line: some commands move the robot

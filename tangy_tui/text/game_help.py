@@ -23,7 +23,7 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.offered import Need, needs_of
-from tangy_tui.app.plan_grammar import CHECK
+from tangy_tui.app.claim_grammar import CHECK
 
 HELP = "You can type at any time:"
 CALLS: frozenset[Need] = frozenset({"calls"})

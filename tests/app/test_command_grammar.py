@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_rules import COMMAND_WORDS
+from tangy_tui.app.claim_grammar import CHECK
 from tangy_tui.app.command_grammar import (
     FIXED,
     command_reader,
@@ -41,7 +42,6 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.inquiry_grammar import INQUIRIES, WHO_IS_HERE, WHOSE_CARDS, read_inquiry
-from tangy_tui.app.plan_grammar import CHECK
 from tangy_tui.app.screen_grammar import Perform, read_screen
 from tangy_tui.app.teaching_grammar import AgainFrom, Leave, read_teaching
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
