@@ -6,14 +6,15 @@ They are asked only of a person who types: a script means what it says.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
 from tangy_tui.app.command_grammar import ANSWERS
 from tangy_tui.app.confirmations import needed_confirmation
-from tangy_tui.app.game_commands import GameCommand
+from tangy_tui.app.game_commands import ClaimCard, GameCommand
 from tangy_tui.app.game_controller import ControllerOutput, GameController
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.teaching_events import (
@@ -26,12 +27,14 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.confirmations import (
+    BEHIND,
     NOT_DONE,
     ConfirmationWords,
     again_confirmation,
     confirmation_words,
     discard_confirmation,
     rule_confirmation,
+    undone_words,
 )
 
 _NO_AND_MORE = re.compile(r"(?:n|no)\b[\s,.;:!]+(.+)", re.I)
@@ -80,8 +83,13 @@ class TypedConfirmation(Generic[CommandT]):
         return None
 
     def _decline(self) -> None:
+        undone = NOT_DONE if self._asked is None else self._undone_words(self._asked[0])
         self.drop()
-        self._write(NOT_DONE)
+        self._write(undone)
+
+    def _undone_words(self, command: CommandT) -> str:
+        """Tell that a command is not carried out."""
+        return NOT_DONE
 
     def drop(self) -> None:
         """Close the question."""
@@ -99,6 +107,7 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
         self._controller, self._name = controller, name
         self._hold = ExitStack()
         self._answered: Callable[[], None] = lambda: None
+        self._behind: deque[str] = deque()
 
     def ask(self, command: GameCommand, typed: SimpleQueue[str | None] | None) -> bool:
         """Return whether a command needs an answer first, and ask for it.
@@ -129,10 +138,26 @@ class ConfirmingStaff(TypedConfirmation[GameCommand]):
         self._decline()
         return found[1]
 
-    def give_way(self, command: GameCommand) -> None:
-        """Close an open question because staff typed another command instead of an answer."""
-        if self._asked is not None and self._asked[0] != command:
+    def give_way(self, command: GameCommand, line: str) -> None:
+        """Close an open question because staff typed another command instead of an answer.
+
+        A claim does not close the question about another claim: its line is kept; see `behind`.
+        """
+        if self._asked is None or self._asked[0] == command:
+            return
+        if isinstance(command, ClaimCard) and isinstance(self._asked[0], ClaimCard):
+            self._behind.append(line)
+            self._write(BEHIND)
+        else:
             self._decline()
+
+    def behind(self) -> Iterator[str]:
+        """Yield the lines kept until a question is answered, as long as no other is open."""
+        while self._behind and not self.open:
+            yield self._behind.popleft()
+
+    def _undone_words(self, command: GameCommand) -> str:
+        return undone_words(command)
 
     def end_of_hold(self) -> Callable[[], Sequence[ControllerOutput]]:
         """Return a function that lets the game go on, once a confirmed command is carried out."""

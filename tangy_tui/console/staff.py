@@ -355,7 +355,7 @@ class StaffLines:
                 controller.answers.reply(Reply(yes=False))
         told = self._inquiries.lines(text) if command is None else None
         if command is not None and read_answer(text) is None:
-            self._sure.give_way(command)
+            self._sure.give_way(command, text)
         if self._sure.open:
             self._telling.write_all(told or () if read_answer(text) is None else ())
             if (confirmed := self._sure.answer(text)) is not None:
@@ -375,6 +375,8 @@ class StaffLines:
             self._telling.tell([controller.answers.say(Say(text))])
         else:
             self._telling.write(self._inquiries.unknown(text))
+        for kept in self._sure.behind():
+            self._take(kept)
 
     def _take_reply(self, reply: ControllerOutput | Confirm | str) -> None:
         if isinstance(reply, str):

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, assert_never
 
+from tangy_tui.app.game_commands import ClaimCard
 from tangy_tui.text import freezes, teaching
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_tui.app.confirmations import Confirmation
+    from tangy_tui.app.game_commands import GameCommand
     from tangy_tui.learning.teaching_events import Ruled
 
 
@@ -100,7 +102,17 @@ def rule_confirmation(rule: Ruled, activity: Activity) -> ConfirmationWords:
 
 
 NOT_DONE = "Not done."
+BEHIND = "Tangy takes that claim after this question."
 NOT_CALLED = "It will count as not called, and come again later."
+
+
+def undone_words(command: GameCommand) -> str:
+    """Tell that staff did not confirm a command; of a claim, which card is not checked."""
+    match command:
+        case ClaimCard(card=card) if card:
+            return f"{NOT_DONE[:-1]}: card {card} is not checked."
+        case _:
+            return NOT_DONE
 
 
 def calling_words(label: str, taken: str) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from tangy_profiles.game_rules import GameRules
+from tangy_tui.app.claim_grammar import CHECK
 from tangy_tui.app.game_commands import (
     AskFor,
     CallAgain,
@@ -23,7 +24,6 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.offered import Need, needs_of
-from tangy_tui.app.claim_grammar import CHECK
 
 HELP = "You can type at any time:"
 CALLS: frozenset[Need] = frozenset({"calls"})

@@ -25,6 +25,7 @@ from tangy_tui.app.game_view import view_of
 from tangy_tui.app.staff_notes import StaffNote
 from tangy_tui.app.terminal_session import TerminalSession
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.confirming import ConfirmingStaff
 from tangy_tui.console.staff import StaffLines
 from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.policies import load_policy
@@ -160,6 +161,21 @@ def test_words_instead_of_a_yes_or_after_a_no_are_carried_out(
     acts = [event.record for event in workspace.store.events(StaffAction)]
     assert [(act.did, act.person) for act in acts][:2] == [("left", "user2"), ("ended", "")]
     assert told.count("Not done.") == 1
+
+
+def test_a_claim_during_the_question_about_another_is_kept(control: GameController) -> None:
+    written: list[str] = []
+    yes = TypedYes(terminal=True, session=TerminalSession, flush=lambda: None)
+    sure = ConfirmingStaff(control, lambda person: person, yes, written.append)
+    call_once(control)
+    control.apply(GoesAway("user2"))
+    assert sure.ask(ClaimCard(2), None)
+    sure.give_way(ClaimCard(1), "bingo 1")
+    assert sure.open and written[-1] == "Tangy takes that claim after this question."
+    assert [*sure.behind()] == [], "the question is still open"
+    sure.give_way(EndGame(), "end")
+    assert written[-1] == "Not done: card 2 is not checked."
+    assert [*sure.behind()] == ["bingo 1"]
 
 
 def test_a_question_of_staff_is_answered_and_the_open_one_asked_again(
