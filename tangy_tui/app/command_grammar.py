@@ -109,6 +109,16 @@ _END = re.compile(
     r"(?:,? (?:please|now|here|today|for today))*",
 )
 """Ways to end the game."""
+_WINNERS = re.compile(
+    rf"{_POLITE}(?:(?:let|make|have) (?:it |there be )?|(?:we |i )want |with |for )?"
+    r"(?:(?P<one>(?:only |just )?(?:one|a single|1)(?: (?:winner|person|of them|player))?"
+    r"(?: (?:can |may |should )?wins?)?)"
+    r"|(?:several|many|more(?: than one)?|all|two) winners?"
+    r"|(?:everybody|everyone|they all|all of them|all|several(?: people)?)(?: who has it)?"
+    r" (?:can |may |should )?wins?)"
+    r"(?:,? (?:only|please|now|today|this time|again|at once|at the same time|per game))*"
+)
+"""Ways to say whether several people can win, if they name a win."""
 _DIAL = re.compile(r"autonomy (\w+)")
 
 
@@ -138,6 +148,8 @@ def read_command(
         return StopRobot()
     if words in FIXED:
         return FIXED[words]
+    if (winners := _WINNERS.fullmatch(words)) and re.search(r"\bwin", words):
+        return LetWin(several=winners["one"] is None)
     if (planned := read_planned(said, find_person, rules)) is not None:
         return planned
     if dial := _DIAL.fullmatch(words):

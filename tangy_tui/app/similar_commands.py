@@ -31,6 +31,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "stop": ("fell", "fallen", "fainted", "collapsed", "accident", "emergency", "ambulance"),
     "end": ("finish", "finished", "quit", "exit", "over", "end"),
     "why": ("why", "reason", "what", "doing", "happening", "happens", "next", "explain"),
+    "one winner": ("winner", "single"),
     "several winners": ("winners",),
     "visits on": ("visit", "visits"),
 }

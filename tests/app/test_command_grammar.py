@@ -34,6 +34,7 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GoesAway,
     HasCard,
+    LetWin,
     SetAutonomy,
     SetPace,
     StopRobot,
@@ -137,6 +138,24 @@ def test_plain_words_end_the_game_unless_tangy_asks_what_to_do(text: str) -> Non
 @pytest.mark.parametrize("text", ["don't end the game yet", "end the visit", "end the trivia"])
 def test_other_words_about_an_end_are_no_command(text: str) -> None:
     assert command_reader(BINGO, find)(text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "several"),
+    [
+        *(("one winner please", False), ("only one winner today.", False)),
+        *(("please let only one person win", False), ("just one winner", False)),
+        *(("everybody wins", True), ("let everyone win please", True)),
+        *(("everybody who has it wins", True), ("we want several winners", True)),
+    ],
+)
+def test_how_many_win_is_read_in_plain_words(text: str, *, several: bool) -> None:
+    assert read(text) == LetWin(several=several)
+
+
+@pytest.mark.parametrize("text", ["who wins", "everybody wants to win", "one more", "has all won"])
+def test_other_words_about_a_win_change_no_rule(text: str) -> None:
+    assert not isinstance(read(text), LetWin)
 
 
 @pytest.mark.parametrize("words", sorted(FIXED))
