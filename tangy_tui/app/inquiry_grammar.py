@@ -74,6 +74,12 @@ _WHY = re.compile(
     rf"|where (?:is|are|does|will) {_TANGY} (?:going|go|driving|drive)(?: to)?(?: now| next)?"
 )
 """Questions about what Tangy does now or next, and whose turn it is."""
+_NEXT = re.compile(
+    r"(?:and )?(?:what|who)(?: is|'s|s| comes| happens| gets (?:help|a visit))?(?: up)? next"
+    r"|whose turn(?: is it| is)?(?: now| next)?"
+    rf"|(?:what|who) (?:does|will|is) {_TANGY} (?:do|doing|visit|visiting|help|helping) next"
+)
+"""Questions in a game about who or what comes next."""
 _WHY_OTHERWISE = re.compile(r"why .*\b(?:you|it|tangy|the robot|nobody|nothing|no one)\b.*")
 """All other questions that begin so, unless they are about something else."""
 _DO = (
@@ -126,7 +132,12 @@ class AsksWhoWon:
     """A question about everybody who has won in the game."""
 
 
-Question: TypeAlias = AsksAbout | AsksGame | AsksHowLong | AsksWhoWaits | AsksWhoWon
+@dataclass(frozen=True, slots=True)
+class AsksNext:
+    """A question about who or what comes next."""
+
+
+Question: TypeAlias = AsksAbout | AsksGame | AsksHowLong | AsksNext | AsksWhoWaits | AsksWhoWon
 
 
 _SHORT = {
@@ -207,6 +218,8 @@ def read_question(text: str, find_person: Callable[[str], str]) -> Question | No
         return AsksWhoWaits()
     if _WHO_WON.fullmatch(words.casefold()):
         return AsksWhoWon()
+    if _NEXT.fullmatch(words.casefold()):
+        return AsksNext()
     return asked or _about_people(words, find_person)
 
 

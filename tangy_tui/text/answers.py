@@ -9,11 +9,13 @@ from tangy_tui.app.game_questions import AsksGame
 from tangy_tui.app.inquiry_grammar import (
     AsksAbout,
     AsksHowLong,
+    AsksNext,
     AsksWhoWaits,
     AsksWhoWon,
     Question,
 )
 from tangy_tui.text.game_answers import WHAT_YOU_ASKED, game_answer_lines
+from tangy_tui.text.next_up import WHAT_NEXT, next_lines
 from tangy_tui.text.planned_time import HOW_LONG, time_lines
 from tangy_tui.text.whose_turn import WHO_WAITS, WHOSE_TURN, about_lines, waiting_lines
 from tangy_tui.text.winners import WHO_WON, won_lines
@@ -41,6 +43,9 @@ def answer_to(question: Question, control: GameController, name: Name) -> GameAn
             return GameAnswer(WHO_WON, won_lines(control, name))
         case AsksGame():
             return GameAnswer(WHAT_YOU_ASKED, game_answer_lines(question, control, name))
+        case AsksNext():
+            activity = control.supervision.world.activity
+            return GameAnswer(WHAT_NEXT, next_lines(activity, game_moment(control), name))
         case AsksAbout():
             return GameAnswer(WHOSE_TURN, about_lines(control, question, name))
         case forgotten:

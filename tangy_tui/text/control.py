@@ -79,7 +79,7 @@ def autonomy_words(level: Autonomy) -> str:
 
 def stopped_words(by: str) -> str:
     """Tell that the robot is stopped, and by which onlooker; by="": staff at this console."""
-    return f"{by} stopped Tangy" if by else "Tangy was stopped"
+    return f"{by[0].upper()}{by[1:]} stopped Tangy" if by else "Tangy was stopped"
 
 
 def going_words(going: str, name: Callable[[str], str], lets: str = "") -> str:

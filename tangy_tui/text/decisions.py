@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from tangy_tui.learning.policy import SURE
+from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.text.numbers import counted, listed, often
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -
     elif not why.rests_on:
         sentences.append(f"A teacher said that {done!r} is right here.")
     else:
-        sentences.append(f"{done!r} was shown here {times}, by {', '.join(teachers)}.")
+        sentences.append(f"{done!r} was shown here {times}, by {teachers_words(teachers)}.")
         if decision.right and why.against:
             right = listed((repr(activity.behaviour_words(b)) for b in decision.right), "or")
             sentences.append(f"A teacher said that {right} is right here.")
@@ -65,6 +66,11 @@ def why_words(activity: Activity, why: DecisionReasons, *, votes: bool = True) -
     return sentences
 
 
+def teachers_words(teachers: Iterable[str]) -> str:
+    """Name those who showed a step; the scripted teacher is a ready-made example."""
+    return listed([EXAMPLE if one == SCRIPTED else one for one in teachers])
+
+
 def reasons_words(activity: Activity, why: DecisionReasons) -> list[str]:
     """Explain a decision in sentences, without its situation."""
     return why_words(activity, why)[1:]
@@ -79,9 +85,12 @@ def shown_words(activity: Activity, shown: DemonstratedStep, name: Callable[[str
         name: returns a demonstration's name for an id.
     """
     where = f"step {shown.number} of {name(shown.demonstration)}"
-    return f"{activity.behaviour_words(shown.step.behaviour)}: {where}, by {shown.teacher}"
+    done = activity.behaviour_words(shown.step.behaviour)
+    return f"{done}: {where}, by {teachers_words([shown.teacher])}"
 
 
+EXAMPLE = "a ready-made example"
+"""The name of the scripted teacher."""
 WHY_HEADINGS = ("Based on", "Shown here as well", "Shown nearby")
 """Headings of the supporting, contradicting and similar steps."""
 HOW_SURE = "How sure Tangy is"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tangy_tui.text.decisions import teachers_words
 from tangy_tui.text.numbers import often
 from tangy_tui.text.refusals import WHICH
 from tangy_tui.text.situations import ALL_RIGHT
@@ -58,7 +59,7 @@ def given_words(activity: Activity, why: DecisionReasons) -> str:
         given.setdefault(shown.step.behaviour, []).append(shown.teacher)
     parts = [
         f"{activity.behaviour_words(behaviour)} "
-        f"({often(len(teachers))}, by {', '.join(dict.fromkeys(teachers))})"
+        f"({often(len(teachers))}, by {teachers_words(dict.fromkeys(teachers))})"
         for behaviour, teachers in given.items()
     ]
     return f"Shown so far: {', '.join(parts)}." if parts else ""

@@ -78,8 +78,8 @@ def waiting_lines(moment: GameMoment, name: Name) -> list[str]:
         return told
     near = moment.with_robot
     if near is not None:
-        there = _on_its_way(moment) if near.state == "comes" else "Tangy is with"
-        told.append(f"{there} {name(near.id)}{_because(moment, near, name)}.")
+        there = on_its_way(moment) if near.state == "comes" else "Tangy is with"
+        told.append(f"{there} {name(near.id)}{because_words(moment, near, name)}.")
     if not moment.waiting:
         told.append("Nobody else waits." if near is not None else "Nobody waits for Tangy.")
         return [one for one in told if one]
@@ -161,7 +161,7 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
         looks = f"Tangy looks at {name(moment.looking)}'s {activity.object}."
         return f"{looks} What it does next depends on that.", moment.looking
     if near is not None and near.state == "comes":
-        return f"{_on_its_way(moment)} {name(near.id)}{_because(moment, near, name)}.", near.id
+        return f"{on_its_way(moment)} {name(near.id)}{because_words(moment, near, name)}.", near.id
     settled, goes_to = settled_words(moment.claim, moment.plays_on, name)
     if goes_to:
         return f"Tangy goes to {name(goes_to)} next, because of the claim.", goes_to
@@ -170,17 +170,19 @@ def _step_words(activity: Activity, moment: GameMoment, name: Name) -> tuple[str
     behaviour = activity.behaviours.get(decision.behaviour)
     if not decision.sure or behaviour is None:
         return "Nobody has shown Tangy what to do next, so it will ask you.", ""
+    if behaviour.calls and moment.calling and moment.waiting:
+        return f"Tangy is calling {moment.calling}.", ""
     following = _next_words(activity, decision, state, name)
     if moment.turns:
         return f"{turn_words(name(moment.turns[0]))}. {following}", ""
     if near is not None and near.turn and not behaviour.visits:
-        there = f"Tangy is with {name(near.id)}{_because(moment, near, name)}."
+        there = f"Tangy is with {name(near.id)}{because_words(moment, near, name)}."
         return f"{there} {following}", near.id
     if moment.won:
         return f"Somebody has won. {following}", ""
     if behaviour.visits and moment.waiting:
         first = moment.waiting[0]
-        return f"Tangy goes to {name(first.id)} next{_because(moment, first, name)}.", first.id
+        return f"Tangy goes to {name(first.id)} next{because_words(moment, first, name)}.", first.id
     if moment.calls_first and (behaviour.calls or behaviour.returns):
         calls = counted(moment.calls_first, "number")
         returns = "goes back to the front and " if behaviour.returns else ""
@@ -204,12 +206,12 @@ def _next_words(activity: Activity, decision: Decision, state: ActivityState, na
     return f"{why[:1].upper()}{why[1:]}. Next: {done}." if why else f"Next: {done}."
 
 
-def _on_its_way(moment: GameMoment) -> str:
+def on_its_way(moment: GameMoment) -> str:
     """Begin to tell to whom Tangy drives, or drove when something stopped it."""
     return f"Tangy {'was' if moment.holder in ('stopped', 'halted') else 'is'} on its way to"
 
 
-def _because(moment: GameMoment, person: PersonNow, name: Name) -> str:
+def because_words(moment: GameMoment, person: PersonNow, name: Name) -> str:
     """Tell why Tangy goes to a person now, as the end of a sentence."""
     if person.claims:
         return ", because of the claim"
@@ -271,9 +273,9 @@ def turn_lines(turn: PersonTurn, name: Name, now: datetime | None) -> list[str]:
         return [*filter(None, [*told, asked]), _turn_words(turn, name)]
     match person.state:
         case "visited":
-            told.append(f"Tangy is with {who} now{_because(moment, person, name)}.")
+            told.append(f"Tangy is with {who} now{because_words(moment, person, name)}.")
         case "comes":
-            told.append(f"{_on_its_way(moment)} {who}{_because(moment, person, name)}.")
+            told.append(f"{on_its_way(moment)} {who}{because_words(moment, person, name)}.")
         case "asks":
             told += [*_asked_lines(turn, name), _visit_words(person, who, now)]
         case "plays":
@@ -291,7 +293,7 @@ def _asked_lines(turn: PersonTurn, name: Name) -> list[str]:
     near, before = moment.with_robot, turn.before
     told = [_asked_words(person, moment, name)]
     if near is not None:
-        there = "Tangy is with" if near.state == "visited" else _on_its_way(moment)
+        there = "Tangy is with" if near.state == "visited" else on_its_way(moment)
         told.append(f"{there} {name(near.id)}{_claim(near)}.")
     if moment.won:
         told.append("Somebody has won, so nobody else gets a visit for now.")
@@ -321,7 +323,7 @@ def _asked_words(person: PersonNow, moment: GameMoment, name: Name) -> str:
     who, waits = name(person.id), person.waits or 0.0
     if person.id in moment.visiting:
         in_turn = " in turn" if moment.visits == "unvisited" else ""
-        return f"Tangy visits {who}{in_turn}{_because(moment, person, name)}."
+        return f"Tangy visits {who}{in_turn}{because_words(moment, person, name)}."
     if waits < STEP_SECONDS:
         return (
             f"{who} waits for Tangy." if person.id in moment.by_staff else f"{who} has just asked."

@@ -141,7 +141,7 @@ def test_why_accepts_numbers_and_words_and_prints_json(tangy: Tangy, taught: Pat
     at = ("--data", taught)
     words = tangy("policy", "--why", "wrong marks", *at).stdout
     assert "'ask to remove markers' was shown here" in words
-    assert "by scripted" in words
+    assert "by a ready-made example" in words
     situations = [r["user_state"] for r in document(tangy("policy", "--json", *at))["rows"]]
     number = situations.index("incorrectly marked") + 1
     why = document(tangy("policy", "--why", str(number), "--json", *at))
