@@ -27,7 +27,7 @@ from tangy_tui.text.decisions import HOW_SURE, why_words
 from tangy_tui.text.endings import ENDED_EARLY
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.learnt import replay_words
-from tangy_tui.text.numbers import counted, listed, of_times, often
+from tangy_tui.text.numbers import counted, listed, of_times, often, ordinal
 from tangy_tui.text.planned_time import clock_words
 from tangy_tui.text.situations import Name, kept_words, once_words
 from tangy_tui.text.staff_view import won_words
@@ -89,13 +89,15 @@ def game_lines(
             )  # fmt: skip
             unfinished = unfinished_words(stopped=stopped, ended=ends)
             said = says_line(speech) if outcome.completed else unfinished
-            return [f"{number}. {step}", f"   {said}"]
+            counts = action.behaviour.calls and outcome.completed and calls
+            told = f" This is the {ordinal(calls)} number." if counts else ""
+            return [f"{number}. {step}{told}", f"   {said}"]
         case Diagnosed() | Moved():
             return fault_lines(event)
         case BeliefUpdated(response, belief):
             what = "would rather not just now"
             if response.followed:
-                what = "did it a little late, which does not count"
+                what = "did what Tangy asked, but too late to count"
             if response.complied:
                 what = "did it"
             profile = supervision.persuasion.beliefs[response.person]

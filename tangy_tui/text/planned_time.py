@@ -47,6 +47,7 @@ def time_words(
     *,
     stopped: bool = False,
     until: bool = True,
+    left: bool = True,
     lasted: bool = True,
 ) -> str:
     """Tell how long the game has lasted (s), and how much of the session's planned time is left.
@@ -58,15 +59,17 @@ def time_words(
         now: the local time of day; None: the game is not played in the time of the home.
         stopped: whether the robot was stopped, so that the game stands for this reason.
         until: whether to tell the time of day at which the planned time is over.
+        left: whether to tell how much time is left.
         lasted: whether to tell how long the game has lasted.
     """
     told = [f"{clock_words(seconds)} so far"] if lasted else []
     if paused is not None and paused >= 1:
         told.append(f"{'stopped' if stopped else 'paused'} {clock_words(paused)}")
     if ends is not None and now is not None:
-        left = (ends - now).total_seconds()
-        told.append(f"{clock_words(left)} left" if left > 0 else "time is up")
-        if until and left > 0:
+        remains = (ends - now).total_seconds()
+        if left:
+            told.append(f"{clock_words(remains)} left" if remains > 0 else "time is up")
+        if until and remains > 0:
             told.append(f"until {end_words(ends, now)}")
         elif until:
             told[-1] += f" since {end_words(ends, now)}"
@@ -83,8 +86,10 @@ def time_facts(
 ) -> Fact:
     """Tell the same with the time of day, and in two shorter ways for less room."""
     words = partial(time_words, seconds, ends, paused, now, stopped=stopped)
-    told = (words(), words(until=False), words(until=False, lasted=ends is None or now is None))
-    return told if paused is not None else told[:2]
+    if paused is None or ends is None or now is None:
+        return words(), words(until=False)
+    over = ends <= now
+    return words(), words(lasted=False), words(lasted=False, left=over, until=not over)
 
 
 def time_is_up_words(ends: datetime, now: datetime) -> str:

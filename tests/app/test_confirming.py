@@ -134,6 +134,11 @@ def test_a_call_is_taken_back_only_after_a_yes(workspace: Workspace) -> None:
     assert "Tangy says: I take" in after
 
 
+def test_each_call_is_told_with_its_count(workspace: Workspace) -> None:
+    told = Typist(("This is the second number.", "end")).plays(workspace, typed=False)
+    assert ". Call number" in told and "This is the first number." in told
+
+
 def test_a_script_is_asked_nothing(workspace: Workspace) -> None:
     told = Typist(
         ("Call number", "take back"), ("counts as not called", "end")

@@ -193,6 +193,9 @@ def test_the_panel_tells_since_when_the_time_is_up() -> None:
     full, short = facts
     assert full == f"1:01 so far, time is up since {end_words(END, now)}"
     assert short == "1:01 so far, time is up"
+    paused = time_facts(61, END, 12.0, END - timedelta(minutes=5))
+    assert paused[-1] == f"paused 0:12, until {end_words(END, now)}"
+    assert time_facts(61, END, 12.0, now)[-1] == "paused 0:12, time is up"
     over = left_words(END, now)
     assert "has been over since" in over and "plan 20 minutes" in over
     assert "5 minutes left" in left_words(END, END - timedelta(minutes=5))

@@ -326,7 +326,7 @@ def test_games_are_printed_step_by_step_with_responses_and_posteriors(
     assert said[0] == "Game 1 begins."
     assert said[1] == "1. Greet everyone, because the game has not begun."
     assert sum(line.startswith("The game is over after ") for line in said) == 3
-    late = " did it a little late, which does not count. "
+    late = " did what Tangy asked, but too late to count. "
     learnt = [line for line in said if " did it. " in line or late in line]
     assert any(late in line for line in learnt)
     assert any(" Best so far: " in line for line in learnt)
@@ -346,7 +346,7 @@ def test_responses_of_people_are_worded_kindly(workspace: Workspace, cover: Cove
         return game_lines(BeliefUpdated(response, Beta(2, 3)), supervision, workspace.name)[0]
 
     assert line(followed=True, complied=True).startswith("   User 2 did it. With praise it ")
-    late = "   User 2 did it a little late, which does not count. With praise it "
+    late = "   User 2 did what Tangy asked, but too late to count. With praise it "
     assert line(followed=True, complied=False).startswith(late)
     never = "   User 2 would rather not just now. With praise it "
     assert line(followed=False, complied=False).startswith(never)
