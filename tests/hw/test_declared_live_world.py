@@ -149,12 +149,14 @@ def test_the_scene_words_what_people_do_as_the_file_does(world: DeclaredLiveWorl
     assert world.scene().doing["user2"] == "asks for help"
 
 
-def test_nobody_is_shown_as_asking_after_the_game(world: DeclaredLiveWorld) -> None:
+def test_who_got_no_visit_is_shown_as_asking_after_the_game(world: DeclaredLiveWorld) -> None:
     asked(world)
     world.tell("user2", "help")
     world.observe()
     assert world.scene().requests == ("user2",)
     world.over = True
+    assert world.scene().requests == ("user2",)
+    world.change(GameChange(game="g", steps=0, what="left", person="user2"))
     assert world.scene().requests == ()
 
 

@@ -210,7 +210,7 @@ async def test_staff_go_on_without_a_device_that_blocks_or_leave_the_robot_off(
             assert "is on" in robot.did
         else:
             await until_shown(pilot, lambda: isinstance(pilot.app.screen, HomeScreen))
-            assert robot.did == ["over"]
+            await until_shown(pilot, lambda: robot.did == ["over"])
 
 
 async def test_a_robot_that_needs_the_device_that_blocks_stays_off(
