@@ -200,6 +200,13 @@ async def test_escape_empties_the_line_then_leaves_it_and_colon_returns(run: Run
         assert bar_of(pilot).text == "b:"
 
 
+async def test_a_line_that_escape_emptied_comes_back_with_up(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        bar_of(pilot).restore("call the next number")
+        await pilot.press("escape", "up")
+        assert bar_of(pilot).text == "call the next number"
+
+
 async def test_escape_empties_the_line_of_a_command_that_came_back(run: Run) -> None:
     async with run(Bar()) as pilot:
         bar_of(pilot).restore("flurb")

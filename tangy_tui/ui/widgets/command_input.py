@@ -204,8 +204,13 @@ class CommandInput(Input):
         self.put(self._draft if self._at == len(self.history) else self.history[self._at])
 
     def action_leave(self) -> None:
-        """Empty the line and close the list of commands; leave an empty line."""
+        """Empty the line and close the list of commands; leave an empty line.
+
+        What stood in the line can be recalled like a command.
+        """
         if self.value or self.listed:
+            if (typed := self.value.strip()) and not self.listed:
+                self.remember(typed)
             self.forget_list()
             self.put("")
             self.post_message(self.Emptied())
