@@ -60,7 +60,8 @@ def _next_words(activity: Activity, moment: GameMoment, name: Name) -> str:
         return f"{then}{name(first.id)} is next{because_words(moment, first, name)}."
     if any(one.calls for one in activity.behaviours.values()):
         then = "After that, Tangy" if busy else "Tangy"
-        return f"Nobody {'else ' if busy else ''}waits. {then} calls the next number."
+        nobody = "Nobody else waits" if moment.with_robot is not None else "Nobody waits"
+        return f"{nobody}. {then} calls the next number."
     decision = moment.decision
     if busy or decision is None or not decision.sure:
         return "Nobody else waits." if busy else ""

@@ -52,6 +52,15 @@ def test_if_nobody_waits_a_number_is_next(robot: Robot) -> None:
     assert answer(robot) == ["Nobody waits. Tangy calls the next number."]
 
 
+def test_while_a_number_is_called_nobody_else_is_meant(robot: Robot) -> None:
+    robot.next(2)
+    moment = replace(game_moment(robot.control), calling="B-9")
+    assert next_up.next_lines(robot.world.activity, moment, robot.workspace.name) == [
+        "Tangy is calling B-9.",
+        "Nobody waits. After that, Tangy calls the next number.",
+    ]
+
+
 def test_the_first_who_waits_is_next(robot: Robot) -> None:
     robot.next(2)
     ask(robot, "user3", "user1")
