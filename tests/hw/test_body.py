@@ -130,3 +130,34 @@ def test_a_robot_with_corners_and_its_scanner_aside_touches_no_wall(goal: Pose) 
             break
     assert navigator.state == "arrived"
     assert hypot(true.x - goal.x, true.y - goal.y) < 0.15
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("heading", [0.0, pi / 2])
+def test_a_robot_with_corners_turns_only_where_they_have_room(heading: float) -> None:
+    rng, walls, place = np.random.default_rng(5), room_sides(ROOM), Pose(2.0, 0.42, heading)
+    navigator = Navigator(MAP, np.random.default_rng(6), place, limits=LARGE)
+    true, twist, wheels, waits = place, STILL, Wheels(rng), set()
+    navigator.spin()
+    for _ in range(60):
+        scan = look(walls, true, rng)
+        twist = navigator.tick(Odometry(wheels.pose, twist), scan, 0.1)
+        wheels.turn(twist, 0.1)
+        true = driven(true, twist, 0.1)
+        waits.add(navigator.yields_to)
+        assert edge(true)[:, 1].min() > 0.0
+    assert navigator.state == "spinning" and "object" in waits
+
+
+@pytest.mark.slow
+def test_a_robot_with_corners_turns_where_there_is_room() -> None:
+    rng, walls, place = np.random.default_rng(5), room_sides(ROOM), Pose(5.0, 2.0, 0.0)
+    navigator = Navigator(MAP, np.random.default_rng(6), place, limits=LARGE)
+    twist, wheels = STILL, Wheels(rng)
+    true = place
+    navigator.spin()
+    for _ in range(160):
+        twist = navigator.tick(Odometry(wheels.pose, twist), look(walls, true, rng), 0.1)
+        wheels.turn(twist, 0.1)
+        true = driven(true, twist, 0.1)
+    assert navigator.state == "idle" and navigator.yields_to == ""

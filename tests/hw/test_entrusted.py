@@ -5,8 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
+from math import pi
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tangy_hw.device_protocols import (
@@ -16,6 +19,7 @@ from tangy_hw.device_protocols import (
     MachineClock,
     Odometry,
     Pose,
+    Scan,
     Stamped,
     Twist,
 )
@@ -23,6 +27,7 @@ from tangy_hw.drivers.ros_navigator import RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.navigation import external_navigator
 from tangy_hw.navigation.external_navigator import ExternalNavigator
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot_process import controller as robots
 from tangy_hw.robot_process.assembly import assemble
@@ -337,3 +342,16 @@ class TestProfiles:
         path.write_text(text[: text.index("navigator = ")], encoding="utf-8")
         found = await try_robot(load_robot(str(path)), load_activity("bingo"), {}, 0.1)
         assert "navigator" not in [one.device for one in found]
+
+
+async def test_a_robot_with_corners_turns_to_localise_only_where_they_have_room() -> None:
+    corners = ((0.4, 0.3), (-0.4, 0.3), (-0.4, -0.3), (0.4, -0.3))
+    limits = replace(MotionLimits(), radius=0.5, corners=corners)
+    ranges = np.full(271, np.inf)
+    free = Scan(-0.75 * pi, pi / 180, ranges, 30.0)
+    beside = Scan(free.first, free.step, np.where(np.arange(271) > 200, 0.45, ranges), 30.0)
+    way = ExternalNavigator(RosNavigator(Rosbridge("ws://127.0.0.1:9")), limits)
+    way.spin()
+    for scan, turns, blocker in ((free, True, ""), (beside, False, "object")):
+        twist = way.tick(Odometry(START, STILL), scan, 0.05)
+        assert (twist != STILL) == turns and way.yields_to == blocker

@@ -44,6 +44,17 @@ def drive(twist: Twist, around: Scan | None) -> tuple[Twist | None, str]:
 
 
 class TestHandDrive:
+    def test_a_robot_with_corners_turns_only_where_they_have_room(self) -> None:
+        corners = ((0.4, 0.3), (-0.4, 0.3), (-0.4, -0.3), (0.4, -0.3))
+        large = replace(LIMITS, radius=0.5, corners=corners)
+        for limits, result in ((LIMITS, ""), (large, "stands")):
+            hand = HandDrive(limits)
+            hand.tell(Twist(0.0, 0.4), 0.0)
+            twist = hand.command(scan(left=0.45), 0.1)
+            assert (twist == STILL) == (result == "stands") and hand.held == result
+        hand.tell(Twist(0.0, 0.4), 0.2)
+        assert hand.command(scan(left=1.5), 0.3) == Twist(0.0, 0.4)
+
     def test_a_command_expires_and_the_robot_stops(self) -> None:
         hand = HandDrive(LIMITS)
         assert hand.command(scan(), 0.0) is None

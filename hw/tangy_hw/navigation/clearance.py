@@ -74,8 +74,9 @@ def limit_by_clearance(
     """Return a twist reduced to the available clearance: on the same arc, or turning only.
 
     The robot slows down near obstacles and stops before close ones, but may still turn: a round
-    robot touches nothing by turning, and it turns slowly next to close obstacles. It always drives
-    backwards slowly, because its scanner sees little there.
+    robot touches nothing by turning, and it turns slowly next to close obstacles. A robot with
+    corners turns only if they stay clear of everything, as of people. It always drives backwards
+    slowly, because its scanner sees little there.
 
     Args:
         twist: the commanded twist.
@@ -96,4 +97,4 @@ def limit_by_clearance(
     near = float(lengths(points).min()) if len(points) else inf
     if near < limits.radius + limits.close_range:
         turn = max(-limits.close_turn, min(limits.close_turn, turn))
-    return Twist(0.0, turn)
+    return limit_near_people(Twist(0.0, turn), NearbyPeople(around.tracks, points), limits)

@@ -14,12 +14,13 @@ from math import pi
 import numpy as np
 
 from tangy_hw.device_protocols import STILL, ExternalNavigation, Odometry, Pose, Scan, Twist
+from tangy_hw.navigation.clearance import REACH
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import SPIN, State
 from tangy_hw.navigation.people_guard import WALKS, NearbyPeople, limit_near_people
 from tangy_hw.navigation.people_tracker import PeopleTracker, Track
-from tangy_hw.navigation.poses import IDENTITY, Floats
+from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints
 from tangy_hw.navigation.surroundings import Blocker
 from tangy_profiles.health import Fact, Reading
 
@@ -42,9 +43,10 @@ class ExternalNavigator:
         """Reason for `failed` or `blocked`: one sentence."""
         self.path = None
         self.yields_to: Blocker = ""
-        """Kind of person it waits for: one who walks into its way."""
+        """What it waits for: a person who walks into its way, or what is too close to turn."""
         self.tracks: tuple[Track, ...] = ()
         self._tracker, self._limits = PeopleTracker(laser), limits or MotionLimits()
+        self._laser, self._ends = laser, np.zeros((0, 2))
         self.obstacles: Floats = np.zeros((0, 2))
         self.unseen: Floats = np.zeros((0, 2))
         self.particles: Floats = np.zeros((0, 3))
@@ -99,7 +101,10 @@ class ExternalNavigator:
         if self.state == "spinning":
             self._turned += abs(odometry.twist.turn) * dt
             if self._turned < 2 * pi:
-                return Twist(0.0, SPIN)
+                around = NearbyPeople(self.tracks, self._ends)
+                spin = limit_near_people(Twist(0.0, SPIN), around, self._limits)
+                self.yields_to = "object" if spin == STILL else ""
+                return spin
             self.state = "idle"
         goal = self._goal if self.state == "driving" and not self.drives else None
         if goal is not None and self._allowed >= AGAIN_SECONDS:
@@ -111,6 +116,7 @@ class ExternalNavigator:
         if scan is None:
             return
         tracks = self._tracker.update(at_scan, scan, dt)
+        self._ends = endpoints(scan, REACH, self._laser)
         self.tracks = tuple(one.seen_from(at_scan) for one in tracks)
         if self.yields_to and self._allowed < AGAIN_SECONDS:
             return  # go on after nobody has come for a moment

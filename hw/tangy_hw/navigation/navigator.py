@@ -278,9 +278,15 @@ class Navigator:
             done = self._turned >= abs(self._turn_to)
         if done:
             self.state = "idle" if self.goal is None else "driving"
-            self._since_plan = AGAIN
+            self._since_plan, self.yields_to = AGAIN, ""
             return STILL
-        return Twist(0.0, SPIN if self._turn_to > 0 else -SPIN)
+        spin = Twist(0.0, SPIN if self._turn_to > 0 else -SPIN)
+        safe = self._around.turned(spin)
+        self.yields_to = ""
+        if safe == STILL:  # there may be room for its corners the other way
+            self.yields_to = self._around.held(spin) or "object"
+            self._turn_to = -self._turn_to
+        return safe
 
     def _find_way(self, pose: Pose, goal: Pose, dt: float) -> None:
         """Plan from time to time; report if there has been no path for a while."""

@@ -46,7 +46,9 @@ class Surroundings:
         self._pose = IDENTITY
         self._tracks: tuple[Track, ...] = ()
         self._unconfirmed: tuple[Track, ...] = ()
-        self._ends: Floats = np.zeros((0, 2))
+        self._returns: Floats = np.zeros((0, 2))
+        self._ends = self._returns
+        """Those of `_returns` (n, 2) that are not on the map; all in the robot's frame."""
 
     def see(self, estimate: Estimate, odometry: Pose, scan: Scan, dt: float) -> None:
         """Update with a scan at the estimated pose, `dt` s after the previous one."""
@@ -60,7 +62,7 @@ class Surroundings:
         self._unconfirmed = tuple(
             replace(one.seen_from(odometry), pace=fast) for one in self._tracker.unconfirmed
         )
-        points = endpoints(scan, REACH, self._laser)
+        points = self._returns = endpoints(scan, REACH, self._laser)
         if unmapped is not None:
             points = points[self._obstacles.among(transform_points(points, estimate.pose))]
         self._ends = points
@@ -110,6 +112,11 @@ class Surroundings:
         who walks as fast as people are assumed to.
         """
         around = NearbyPeople((*self._tracks, *self._unconfirmed), self._ends)
+        return limit_near_people(twist, around, self._limits)
+
+    def turned(self, twist: Twist) -> Twist:
+        """Return the part of a turn on the spot that keeps corners clear of walls, too."""
+        around = NearbyPeople((*self._tracks, *self._unconfirmed), self._returns)
         return limit_near_people(twist, around, self._limits)
 
     def held(self, twist: Twist) -> Blocker:

@@ -92,4 +92,4 @@ class HandDrive:
 def _held(told: Twist, twist: Twist) -> HandDriveResult:
     if twist == told:
         return ""
-    return "stands" if twist.forward == 0 and told.forward != 0 else "slow"
+    return "stands" if twist == STILL or twist.forward == 0 != told.forward else "slow"
