@@ -18,6 +18,8 @@ FASTEST_TURN = 6.0  # rad/s
 HARDEST = 5.0  # m/s^2
 HIGHEST = 3.0  # metres above the floor
 SHORTEST = 1.0  # metres that a scanner must see
+MEASURED = ("radius", "turn", "acceleration", "braking", "laser")
+"""The values that have to be measured on each robot: it drives by them."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class BodyProfile:
 
     It is round with `radius` m, or has `corners` (x, y) in m, and `radius` is then the distance of
     the outermost one. `turn` is in rad/s; `acceleration` and `braking` are in m/s^2. `arms` is how
-    far its arms reach, in m from its centre.
+    far its arms reach, in m from its centre. `assumed` are the values of `MEASURED` that the file
+    leaves out, so that Tangy's own are used.
     """
 
     radius: float = 0.25
@@ -52,6 +55,7 @@ class BodyProfile:
     laser: Mount = field(default_factory=Mount)
     cameras: Mapping[str, Mount] = field(default_factory=dict)
     arms: float = 0.0
+    assumed: tuple[str, ...] = field(default=(), compare=False)
 
 
 def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
@@ -61,7 +65,7 @@ def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
         ProfileError: names the key and its problem.
     """
     if "body" not in top:
-        return BodyProfile()
+        return BodyProfile(assumed=MEASURED)
     entry, usual = top.table("body"), BodyProfile()
     corners = _corners(entry)
     if corners:
@@ -81,6 +85,7 @@ def read_body(top: Table, cameras: Iterable[str]) -> BodyProfile:
         _laser(entry.table("laser", optional=True)),
         MappingProxyType({name: _mount(seen.table(name)) for name in seen if name in known}),
         entry.number("arms", 0.0, LARGEST, usual.arms, unit="m"),
+        tuple(key for key in MEASURED if key not in entry and (key != "radius" or not corners)),
     )
     seen.close(also=known)
     entry.close(also=() if corners else ("radius", "corners"))

@@ -82,6 +82,16 @@ def _words(body: BodyProfile) -> list[str]:
     return lines
 
 
+def assumed_words(body: BodyProfile) -> list[str]:
+    """Tell what the robot's file leaves out, though it has to be measured; [] if nothing."""
+    if not body.assumed:
+        return []
+    return [
+        f"The robot's file does not give: {', '.join(body.assumed)}. It drives with Tangy's values "
+        "until you measure them and write them under [body]."
+    ]
+
+
 def _place(mount: Mount) -> str:
     """Tell the position of a device, and its heading unless that is straight ahead."""
     aside = f"{abs(mount.y):.2f} m to the {'left' if mount.y > 0 else 'right'}, " * bool(mount.y)

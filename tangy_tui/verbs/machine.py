@@ -66,7 +66,7 @@ def doctor(
         from tangy_profiles.activity import load_activity
         from tangy_profiles.robot import load_robot
         from tangy_tui.app.chosen_activity import chosen_activity
-        from tangy_tui.text.body import draw_body
+        from tangy_tui.text.body import assumed_words, draw_body
 
         body = load_robot(robot)
         game = load_activity(activity or chosen_activity(data_folder(data)))
@@ -74,6 +74,7 @@ def doctor(
         tried = examine_robot(body, game, cameras, folder=data_folder(data))
         tried += examine_contacts(body)
         drawing = draw_body(body.body)
+        drawing += assumed_words(body.body) if body.drivers else []
         wanted |= {finding.part for finding in tried}
         findings += tried
     if as_json:

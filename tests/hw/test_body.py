@@ -16,7 +16,7 @@ from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.people_guard import NearbyPeople, limit_near_people, outside
 from tangy_hw.navigation.people_tracker import Track
 from tangy_hw.navigation.poses import Floats, compose, transform_points
-from tangy_profiles.body import BodyProfile
+from tangy_profiles.body import MEASURED, BodyProfile
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.robot import Robot, load_robot
 from tests.hw.navigated import FRONT, MAP, ROOM, TABLE
@@ -43,6 +43,16 @@ class TestFile:
     def test_a_file_without_a_body_gets_the_default_body(self) -> None:
         assert load_robot().body == BodyProfile()
         assert MotionLimits.of(load_robot()) == MotionLimits(max_speed=load_robot().speed)
+
+    def test_values_that_the_file_leaves_out_are_named(self, tmp_path: Path) -> None:
+        assert load_robot().body.assumed == MEASURED
+        given = described(tmp_path, "[body]\nbraking = 0.8\nlaser = { x = 0.1 }\n").body
+        assert given.assumed == ("radius", "turn", "acceleration")
+        corners = "corners = [0.4, 0.3, -0.4, 0.3, -0.4, -0.3, 0.4, -0.3]"
+        given = described(tmp_path, f"[body]\n{corners}\nturn = 1\n").body
+        assert given.assumed == ("acceleration", "braking", "laser")
+        for shipped in ("turtlebot4", "pepper"):
+            assert load_robot(shipped).body.assumed == ()
         assert laser_of(load_robot()) == Pose(0.0, 0.0, 0.0)
         assert reach_of(load_robot()) == inf
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_profiles.body import BodyProfile, Mount
-from tangy_tui.text.body import CAMERA, EDGE, LASER, WHEELS, draw_body
+from tangy_tui.text.body import CAMERA, EDGE, LASER, WHEELS, assumed_words, draw_body
 
 CORNERS = ((0.4, 0.3), (-0.4, 0.3), (-0.4, -0.3), (0.4, -0.3))
 
@@ -52,3 +52,9 @@ def test_a_scanner_outside_the_body_is_told(x: float, outside: bool) -> None:
     body = BodyProfile(radius=0.5, corners=CORNERS, laser=Mount(x, 0.0))
     told = "The laser scanner is outside the body: check where it is, in m."
     assert (told in draw_body(body)) is outside
+
+
+def test_what_has_to_be_measured_and_is_left_out_is_told() -> None:
+    (told,) = assumed_words(BodyProfile(assumed=("radius", "laser")))
+    assert told.startswith("The robot's file does not give: radius, laser.")
+    assert assumed_words(BodyProfile()) == []
