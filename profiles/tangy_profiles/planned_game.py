@@ -303,7 +303,10 @@ class PlannedGame:
                 self.winner, self._asked_before = "", frozenset()
                 self._wins_by_word(person)
             case "claimed":
+                earlier = [one for one in self.tracker.queue if one in self.vouched]
                 self._wins_by_word(person)
+                for one in reversed(earlier):
+                    self.tracker.first(one)
             case "left":
                 self.away |= {person}
                 self._plan_without(self.plan_away | {person})

@@ -75,7 +75,7 @@ class EndingGames:
         self.note("ended")
         game = self.supervision
         asked = game.question is not None and not asked_for(game.question)
-        events = game.give_up() if asked or game.halted is not None else game.leave()
+        events = game.give_up() if asked or game.halted is not None else game.leave(ends=True)
         return [StaffNote("ended"), *events]
 
     def _ended(self) -> None:

@@ -311,9 +311,9 @@ class Facilitation:
         question, self.question = self.question, None
         return [self._end(f"{question.reason} {question.remedy}")]
 
-    def leave(self) -> list[GameEvent]:
-        """End a running game because its viewer leaves."""
-        return self.stop("It was left before its end.")
+    def leave(self, *, ends: bool = False) -> list[GameEvent]:
+        """End a running game because its viewer leaves, or because staff end it (`ends`)."""
+        return self.stop("Staff ended it." if ends else "It was left before its end.")
 
     def _told(self, acted: Acted, ended: GameEnded | None) -> list[GameEvent]:
         """Return the events of a logged step, and update the posteriors by its response."""

@@ -362,11 +362,11 @@ class Supervision:
             return told + self._stop(f"{fault.unnamed} {question.remedy}")
         return told + self.recovery.leave_open() + list(self.game.give_up())
 
-    def leave(self) -> list[Event]:
-        """End a running game because its operator leaves."""
+    def leave(self, *, ends: bool = False) -> list[Event]:
+        """End a running game because its operator leaves, or because staff end it (`ends`)."""
         if self.over:
             return []
-        return self.recovery.leave_open() + list(self.game.leave())
+        return self.recovery.leave_open() + list(self.game.leave(ends=ends))
 
     def _stop(self, reason: str) -> list[Event]:
         return self.recovery.leave_open() + list(self.game.stop(reason))

@@ -28,6 +28,12 @@ def won_lines(control: GameController, name: Name) -> list[str]:
         return [NO_WINNERS, *told]
     over = control.supervision.over and control.supervision.games > 0
     told = [_one_win(game, win, name) for win in game.all_wins]
+    if not over:
+        told += [
+            f"{name(one)}'s card wins: Tangy still has to go there."
+            for one in game.tracker.queue
+            if one in game.vouched
+        ]
     nobody = "Nobody has won." if over else "Nobody has won yet."
     return [*([OVER] if over else []), *(told or [nobody])]
 

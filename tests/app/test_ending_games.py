@@ -86,7 +86,7 @@ def test_a_game_whose_end_cannot_be_logged_stands_still_until_staff_let_it_go_on
     control, full = robot.control, TangyError("The disk is full.")
     robot.next(2)
 
-    def refuse() -> None:
+    def refuse(*, ends: bool) -> None:
         raise full
 
     with monkeypatch.context() as patch:
@@ -117,8 +117,8 @@ def test_a_command_that_the_end_of_the_game_interrupts_says_so(robot: Robot) -> 
 @pytest.mark.parametrize(
     ("before", "why"),
     [
-        ("plays", "It was left before its end."),
-        ("took over", "It was left before its end."),
+        ("plays", "Staff ended it."),
+        ("took over", "Staff ended it."),
         ("asks", "Nobody has shown that. What now?"),
         (
             "halted",

@@ -243,5 +243,5 @@ def test_a_one_time_answer_names_its_author(supervise: Supervise) -> None:
     game = supervise("no-effect@1", seed=3)
     said = play_by_turns(game, "call number", "y")
     (done,) = [line for line in said if line.startswith("2. ")]
-    assert done.endswith("as Ada said.")
+    assert done.startswith("2. Call number, as Ada said.")
     assert any(line.startswith("   Done this once: ") for line in said)
