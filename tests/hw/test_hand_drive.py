@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from tangy_hw.device_protocols import STILL, Scan, Stamped, Twist
 from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, OVERRIDE, HandDrive
+from tangy_hw.robot_process.hand_drive import FIRST_SECONDS, HOLDS_SECONDS, OVERRIDE, HandDrive
 from tangy_hw.robot_process.wheels import OLD_SECONDS, Wheels
 from tangy_profiles.robot import load_robot
 from tests.bench.people_keys import speed_when_met
@@ -38,9 +38,12 @@ def scan(**ahead: float) -> Scan:
 
 
 def drive(twist: Twist, around: Scan | None) -> tuple[Twist | None, str]:
-    hand = HandDrive(LIMITS)
-    hand.tell(twist, 0.0)
-    return hand.command(around, 0.1), hand.held
+    """Return what the robot is told once it has sped up."""
+    hand, told = HandDrive(LIMITS), None
+    for tick in range(15):
+        hand.tell(twist, tick / 10)
+        told = hand.command(around, tick / 10)
+    return told, hand.held
 
 
 class TestHandDrive:
@@ -58,8 +61,8 @@ class TestHandDrive:
     def test_a_command_expires_and_the_robot_stops(self) -> None:
         hand = HandDrive(LIMITS)
         assert hand.command(scan(), 0.0) is None
-        hand.tell(Twist(0.3, 0.0), 1.0)
-        assert hand.command(scan(), 1.0 + HOLDS_SECONDS - 0.01) == Twist(0.3, 0.0)
+        hand.tell(Twist(0.0, 0.3), 1.0)
+        assert hand.command(scan(), 1.0 + HOLDS_SECONDS - 0.01) == Twist(0.0, 0.3)
         assert hand.command(scan(), 1.0 + HOLDS_SECONDS) == STILL
         assert hand.command(scan(), 2.0) is None
 
@@ -83,8 +86,9 @@ class TestHandDrive:
         hand = HandDrive(LIMITS)
         hand.tell(Twist(forward, 0.0), 0.0, overrides=True)
         crawl = Twist(math.copysign(OVERRIDE, forward), 0.0)
-        assert hand.command(scan(front=0.4), 0.1) == crawl and hand.held == "overridden"
-        assert hand.command(None, 0.2) == STILL
+        hand.command(scan(front=0.4), 0.1)
+        assert hand.command(scan(front=0.4), 0.2) == crawl and hand.held == "overridden"
+        assert hand.command(None, 0.3) == STILL
         assert hand.command(scan(front=0.4), HOLDS_SECONDS) == STILL
         hand.tell(Twist(forward, 0.0), 1.0)
         assert hand.command(scan(front=0.4, left=0.4), 1.1) != crawl
@@ -110,7 +114,34 @@ class TestHandDrive:
             await asyncio.sleep(0)  # the command to stand is sent
             await one.take(do="drive", forward=9.0, turn=0.0)
             one.robot.tick()
-            assert one.robot.wheels.driven == Twist(one.robot.robot.speed, 0.0)
+            assert 0.0 < one.robot.wheels.driven.forward <= one.robot.robot.speed
+
+
+class TestAcceleration:
+    def test_the_robot_speeds_up_as_its_body_can_and_slows_down_at_once(self) -> None:
+        hand = HandDrive(replace(LIMITS, acceleration=0.2))
+        hand.tell(Twist(0.5, 0.2), 0.0)
+        first = hand.command(scan(), 0.0)
+        assert first == pytest.approx((0.02, 0.008))  # on the same arc
+        assert hand.command(scan(), 0.3) == pytest.approx((0.08, 0.032))
+        hand.tell(Twist(0.05, 0.0), 0.35)
+        assert hand.command(scan(), 0.35) == Twist(0.05, 0.0)
+        hand.tell(Twist(-0.5, 0.0), 0.4)
+        assert hand.command(scan(), 0.4) == pytest.approx((-0.01, 0.0))
+
+    @given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(0.01, 0.6)), max_size=20))
+    def test_no_two_commands_differ_by_more_than_the_acceleration(
+        self, keys: list[tuple[float, float]]
+    ) -> None:
+        hand, now, before = HandDrive(LIMITS), 0.0, 0.0
+        for forward, seconds in keys:
+            now += seconds
+            hand.tell(Twist(forward, 0.0), now)
+            told = hand.command(scan(), now)
+            after = 0.0 if told is None else told.forward
+            most = LIMITS.acceleration * max(seconds, FIRST_SECONDS) + 1e-9
+            assert abs(after) <= (abs(before) if after * before > 0 else 0.0) + most
+            before = after
 
 
 class TestPeopleWhoSetOff:

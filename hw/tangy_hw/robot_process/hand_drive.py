@@ -17,6 +17,8 @@ from tangy_hw.navigation.poses import IDENTITY, Floats, endpoints
 
 HOLDS_SECONDS = 0.4  # for which a manual command is valid
 
+FIRST_SECONDS = 0.1  # of acceleration in the first command from standing
+
 SET_OFF = 0.9  # m/s at which a person who stands may set off towards the robot
 
 OVERRIDE = 0.08  # maximum m/s while the scanner's protection is overridden
@@ -35,7 +37,8 @@ class HandDrive:
     def __init__(self, limits: MotionLimits, laser: Pose = IDENTITY) -> None:
         self.held: HandDriveResult = ""
         self._limits, self._laser = replace(limits, set_off=SET_OFF), laser
-        self._told = STILL
+        self._told = self._given = STILL
+        self._given_at = 0.0
         self._overrides = False
         self._until = 0.0
 
@@ -52,7 +55,8 @@ class HandDrive:
 
     def end(self) -> None:
         """Drop the command."""
-        self._told, self.held = STILL, ""
+        self._told = self._given = STILL
+        self.held = ""
 
     def command(
         self,
@@ -70,23 +74,38 @@ class HandDrive:
             tracks: tracks around, in the robot's frame.
         """
         if self._told == STILL:
+            self._given = STILL
             return None
         if now >= self._until:
             self.end()
             return STILL
         if scan is None:
-            self.held = "stands"
+            self.held, self._given = "stands", STILL
             return STILL
         if self._overrides:
             self.held = "overridden"
-            return self._told
+            return self._sped_up(self._told, now)
         points = endpoints(scan, REACH, self._laser)
         around = NearbyPeople(tracks, points)
         if unseen is not None and len(unseen):
             points = np.vstack((points, unseen))
         twist = limit_by_clearance(self._told, points, around, self._limits)
         self.held = _held(self._told, twist)
-        return twist
+        return self._sped_up(twist, now)
+
+    def _sped_up(self, twist: Twist, now: float) -> Twist:
+        """Return the part of a twist that the acceleration of the body allows after the last one.
+
+        The robot may slow down at once. `now` is in s.
+        """
+        last, seconds = self._given.forward, min(now - self._given_at, HOLDS_SECONDS)
+        before = abs(last) if last * twist.forward > 0.0 else 0.0
+        if self._given == STILL:
+            seconds = FIRST_SECONDS
+        most = before + self._limits.acceleration * seconds
+        share = min(1.0, most / abs(twist.forward)) if twist.forward else 1.0
+        self._given, self._given_at = Twist(twist.forward * share, twist.turn * share), now
+        return self._given
 
 
 def _held(told: Twist, twist: Twist) -> HandDriveResult:
